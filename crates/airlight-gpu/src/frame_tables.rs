@@ -73,9 +73,10 @@ impl SkySolver {
         let sun = SunState { direction, ..sun };
         fog.map_or(Ok(()), Fog::validate)?;
         let view = self.sky.try_view(height_m, sun)?;
-        let sky = SkyTables::new(&view, &self.fit, self.space)?;
+        let split = view.split();
+        let sky = SkyTables::of(&split, &self.fit, self.space)?;
         let direct = self.fit.sun_illuminance_lx(&view, self.space)?;
-        let lighting = Lighting::new(&view, &sky, direct);
+        let lighting = Lighting::new(split.table(), &sky, direct);
         let (fog, lighting) = match fog {
             Some(fog) => {
                 let lit = fog.lit(&lighting)?;

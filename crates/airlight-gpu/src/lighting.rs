@@ -2,7 +2,7 @@
 
 use airlight::fog::RgbFog;
 use airlight::glam::DVec3;
-use airlight::sky::{TableChannels, View};
+use airlight::sky::SkyTable;
 use airlight::transfer::RgbPathOptics;
 use airlight_shaders::SkyTables;
 use airlight_shaders::twins::colour::rgb_from_spectrum;
@@ -34,14 +34,13 @@ pub struct Lighting {
 }
 
 impl Lighting {
-    /// Light at the eye of a view, from its tables, with the illuminance by the sun's disc.
-    pub(crate) fn new(view: &View, tables: &SkyTables, sun_illuminance_lx: [f64; 3]) -> Self {
+    /// Light at the eye of a view, from its light in all directions and its tables, with the illuminance by the sun's disc.
+    pub(crate) fn new(sky: &SkyTable, tables: &SkyTables, sun_illuminance_lx: [f64; 3]) -> Self {
         let rgb =
             |light: &[f32]| rgb_from_spectrum(tables.radiance_weights, Vec4::from_slice(light));
         let (normals, weights): (Vec<DVec3>, Vec<f64>) = normals().unzip();
         let mut arriving = vec![0.0; 4 * normals.len()];
-        view.table(TableChannels::Spectral)
-            .irradiances(&normals, &mut arriving);
+        sky.irradiances(&normals, &mut arriving);
         let mut sky_coefficients_lx = [Vec3::ZERO; 9];
         for ((normal, weight), light) in normals.iter().zip(weights).zip(arriving.chunks_exact(4)) {
             let light = rgb(light) * weight as f32;
@@ -53,7 +52,7 @@ impl Lighting {
             }
         }
         Self {
-            sun: view.sun().as_vec3(),
+            sun: tables.view.sun,
             sun_illuminance_lx: Vec3::from_array(sun_illuminance_lx.map(|v| v as f32)),
             sky_coefficients_lx,
         }

@@ -66,12 +66,20 @@ impl SkyTables {
     /// # Errors
     /// [`SkyTablesError`] for a sky at other wavelengths, and for a view that the fit cannot be solved for.
     pub fn new(view: &View, fit: &ColourFit, space: RgbSpace) -> Result<Self, SkyTablesError> {
+        Self::of(&view.split(), fit, space)
+    }
+
+    /// As [`SkyTables::new`], of a view whose light is split.
+    ///
+    /// # Errors
+    /// As [`SkyTables::new`].
+    pub fn of(split: &SplitView, fit: &ColourFit, space: RgbSpace) -> Result<Self, SkyTablesError> {
+        let view = split.view();
         let grid = view.sky().grid();
         if grid.wavelengths_nm() != WAVELENGTHS_NM {
             let wavelengths_nm = grid.wavelengths_nm().to_vec();
             return Err(SkyTablesError::Wavelengths(wavelengths_nm));
         }
-        let split = view.split();
         let (ground_radius_m, top_radius_m) = view.bounds_m();
         let radius_m = view.radius_m();
         let highest = match radius_m >= top_radius_m {
@@ -91,12 +99,12 @@ impl SkyTables {
             horizon_rad: place.horizon as f32,
             highest_rad: highest as f32,
         };
-        let sky = sky(&split, &place);
+        let sky = sky(split, &place);
         let scales = twin::SkyScales {
             smooth_light: scale(&sky.0),
             haze: scale(&sky.1),
         };
-        let aerial = aerial(&split, &place, &sky_view);
+        let aerial = aerial(split, &place, &sky_view);
         let [radiance_weights, transmittance_weights, disc_weights] =
             rgb_weights(view, fit, space)?;
         Ok(Self {
@@ -107,7 +115,7 @@ impl SkyTables {
             aerial_smooth: logarithms(aerial_size(), &aerial.smooth, scales.smooth_light),
             aerial_haze: logarithms(aerial_size(), &aerial.haze, scales.haze),
             extinction: aerial.extinction,
-            phase: phase(&split),
+            phase: phase(split),
             radiance_weights,
             transmittance_weights,
             disc_weights,
@@ -204,7 +212,7 @@ struct Aerial {
 
 fn aerial(split: &SplitView, eye: &Eye, view: &twin::SkyView) -> Aerial {
     let [columns, rows, distances] = aerial_size();
-    let mut rays = Vec::with_capacity(columns * rows);
+    let mut rays = Vec::with_capacity(rows);
     let mut starts_m = Vec::with_capacity(rows);
     for row in 0..rows {
         let (elevation, is_below) = eye.elevation(row, AERIAL_ROWS);
@@ -216,14 +224,13 @@ fn aerial(split: &SplitView, eye: &Eye, view: &twin::SkyView) -> Aerial {
             start_m + length_m * f64::from(twin::part_from_place(place as f32))
         });
         let stops_m: Vec<f64> = stops_m.collect();
-        for column in 0..columns {
-            rays.push((eye.direction(column, columns, elevation), stops_m.clone()));
-        }
+        let directions = (0..columns).map(|column| eye.direction(column, columns, elevation));
+        rays.push((directions.collect(), stops_m));
     }
     let paths = split.many_paths(&rays);
     let mut smooth = vec![Vec4::ZERO; columns * rows * distances];
     let mut haze = smooth.clone();
-    for (index, path) in paths.iter().enumerate() {
+    for (index, path) in paths.iter().flatten().enumerate() {
         for (step, stop) in path.iter().enumerate() {
             let texel = step * columns * rows + index;
             let opacity = vec4(&stop.optical_depth).map_lanes(|depth| -(-depth).exp_m1());
@@ -233,7 +240,7 @@ fn aerial(split: &SplitView, eye: &Eye, view: &twin::SkyView) -> Aerial {
     }
     let mut extinction = Vec::with_capacity(rows * distances);
     for row in 0..rows {
-        let (_, stops_m) = &rays[row * columns];
+        let (_, stops_m) = &rays[row];
         let mean = |(stop, stop_m): (&SplitPath, &f64)| {
             let length_km = (1e-3 * (stop_m - starts_m[row])) as f32;
             match length_km > 0.0 {
@@ -241,7 +248,7 @@ fn aerial(split: &SplitView, eye: &Eye, view: &twin::SkyView) -> Aerial {
                 false => Vec4::ZERO,
             }
         };
-        extinction.extend(paths[row * columns].iter().zip(stops_m).map(mean));
+        extinction.extend(paths[row][0].iter().zip(stops_m).map(mean));
     }
     Aerial {
         smooth,

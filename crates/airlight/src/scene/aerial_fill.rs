@@ -117,11 +117,15 @@ fn row_of<const N: usize>(
         .collect();
     let across = DVec3::Y.cross(sun_azimuth);
     let (mut extinction, mut source) = (Vec::new(), Vec::new());
-    for azimuth in 0..AZIMUTHS {
-        let cos_azimuth = 2.0 * azimuth as f64 / (AZIMUTHS - 1) as f64 - 1.0;
-        let sin_azimuth = (1.0 - cos_azimuth * cos_azimuth).sqrt();
-        let direction = DVec3::Y * sin + (sun_azimuth * cos_azimuth + across * sin_azimuth) * cos;
-        let stops = view.samples_along_ray(direction, &stops_m, &peaked.parts, &converter.used());
+    let directions: Vec<DVec3> = (0..AZIMUTHS)
+        .map(|azimuth| {
+            let cos_azimuth = 2.0 * azimuth as f64 / (AZIMUTHS - 1) as f64 - 1.0;
+            let sin_azimuth = (1.0 - cos_azimuth * cos_azimuth).sqrt();
+            DVec3::Y * sin + (sun_azimuth * cos_azimuth + across * sin_azimuth) * cos
+        })
+        .collect();
+    let rays = view.samples_along_rays(&directions, &stops_m, &peaked.parts, &converter.used());
+    for (azimuth, (direction, stops)) in directions.iter().zip(rays).enumerate() {
         let phases = peaked.phases(0.5 * direction.distance(view.sun()));
         for (stop, stop_m) in stops.iter().zip(&stops_m) {
             let opacity = converter.opacity(&stop.depth).map(|a| a.min(1.0 - OPAQUE));

@@ -5,6 +5,7 @@ use super::field::{Diffuse, FieldGrid, ground_irradiance};
 use super::orders;
 use super::peaked::{Part, Peaked, Scattered};
 use super::ray_bundle::{Path, RayBundle, Scratch};
+use super::samples_along_rays::RaySample;
 use super::settings::{Scattering, SkyError, SkySettings};
 use super::trace::Tracer;
 use crate::atmosphere::Atmosphere;
@@ -58,8 +59,13 @@ pub trait Block: Send + Sync {
     /// the ray and the sun.
     fn linear(&self, ray: &Ray, cos_azimuth: f64) -> [Vec<f32>; 2];
 
-    /// Light from the eye to each of the increasing distances `samples_m`.
-    fn samples_along_ray(&self, ray: &Ray, samples_m: &[f64], parts: &[Part]) -> Vec<SampleLight>;
+    /// Light from the eye to each of the increasing distances `samples_m`, along each ray of a row: `[ray][sample]`.
+    fn samples_along_rays(
+        &self,
+        row: &TableRow,
+        samples_m: &[f64],
+        parts: &[Part],
+    ) -> Vec<Vec<SampleLight>>;
 
     /// Transmittance from a point to space along `mu`; 0 if the ray hits the planet.
     fn transmittance_to_space(&self, radius_m: f64, mu: f64) -> Vec<f32>;
@@ -224,36 +230,49 @@ impl<const N: usize> Block for Solved<N> {
         light.map(|part| self.used(&part))
     }
 
-    fn samples_along_ray(&self, ray: &Ray, samples_m: &[f64], parts: &[Part]) -> Vec<SampleLight> {
+    fn samples_along_rays(
+        &self,
+        row: &TableRow,
+        samples_m: &[f64],
+        parts: &[Part],
+    ) -> Vec<Vec<SampleLight>> {
         let samples = vectorized(
             #[inline(always)]
-            || self.tracer().samples_along_ray(ray, samples_m),
+            || {
+                self.tracer()
+                    .samples_along_rays(row.start, &row.bundle, samples_m)
+            },
         );
-        samples
-            .iter()
-            .map(|sample| {
+        let rays = samples.iter().zip(&row.bundle.nu);
+        rays.map(|(samples, &nu)| {
+            let scatterers = self.dimming().scatterers.iter();
+            let phases = scatterers.map(|s| (s.phase(&self.air, nu), s.shares(nu)));
+            let phases: Vec<_> = phases.collect();
+            let of_sample = |sample: &RaySample<N>| {
                 let mut path = vec![Spectrum::ZERO; 1 + parts.len()];
                 path[0] = sample.multiple_scatter;
                 let scatterers = self.dimming().scatterers.iter();
-                for (s, streams) in scatterers.zip(&sample.streams) {
-                    let phase = s.phase(&self.air, ray.nu);
+                for ((s, (phase, shares)), streams) in scatterers.zip(&phases).zip(&sample.streams)
+                {
                     let mut peaked = false;
                     for (part, path) in parts.iter().zip(&mut path[1..]) {
                         if part.constituent == s.constituent {
-                            *path = streams[part.stream] * phase;
+                            *path = streams[part.stream] * *phase;
                             peaked = true;
                         }
                     }
                     if !peaked {
-                        path[0] = path[0].mul_acc(combined(streams, &s.shares(ray.nu)), phase);
+                        path[0] = path[0].mul_acc(combined(streams, shares), *phase);
                     }
                 }
                 SampleLight {
                     depth: self.used(&sample.depth),
                     path: path.iter().map(|part| self.used(part)).collect(),
                 }
-            })
-            .collect()
+            };
+            samples.iter().map(of_sample).collect()
+        })
+        .collect()
     }
 
     fn transmittance_to_space(&self, radius_m: f64, mu: f64) -> Vec<f32> {

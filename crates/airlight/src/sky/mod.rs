@@ -20,7 +20,7 @@
 //! atmosphere), `polarised` (moments of its polarisation), `horizon` (light that forward peaks scatter at the horizon), `orders`
 //! (all orders of scattering), `horizontal_exchange`, `damping` and `mixing` (its corrections in thick air), `transport` (light scattered once
 //! more), `plane_parallel` (its direct solution in plane-parallel air), `ray_bundle` (rays that share their path), `trace` (light
-//! along one ray), `samples_along_ray` (light at many distances along a ray), `table` (all directions of a view), `split` (its light in
+//! along one ray), `samples_along_rays` (light at many distances along rays), `table` (all directions of a view), `split` (its light in
 //! two parts that vary slowly, for tables), `stokes` (its
 //! polarisation).
 
@@ -41,7 +41,7 @@ mod plane_parallel;
 mod polarised;
 mod ray_bundle;
 mod rgb_view;
-mod samples_along_ray;
+mod samples_along_rays;
 mod settings;
 mod solver;
 mod split;

@@ -305,6 +305,16 @@ pub fn linear_gain<const N: usize>(air: &Air<N>, columns_m: &PerConstituent) -> 
         .exp()
 }
 
+/// A ray with the sun at the zenith, so that no shadow edge crosses it and its steps serve all sun angles.
+fn zenith_sun_ray((radius_m, mu): (f64, f64)) -> Ray {
+    Ray {
+        radius_m,
+        mu,
+        mu_sun: 1.0,
+        nu: mu,
+    }
+}
+
 impl<const N: usize> Path<N> {
     /// Traces a path from `radius_m` along `mu` through the whole atmosphere.
     #[inline(always)]
@@ -312,39 +322,109 @@ impl<const N: usize> Path<N> {
         air: &Air<N>,
         grid: Option<&FieldGrid>,
         marcher: &Marcher<'_>,
-        (radius_m, mu): (f64, f64),
+        start: (f64, f64),
         degree: usize,
     ) -> Self {
-        let mut path = Self {
+        let ray = zenith_sun_ray(start);
+        let mut path = Self::empty(start);
+        let Some(segment) = air.shell().segment(&ray, f64::INFINITY) else {
+            return path;
+        };
+        let span = (segment.start_m, segment.end_m);
+        let before = [0.0; MAX_CONSTITUENTS];
+        let columns = path.trace(air, grid, marcher, (span, before), degree);
+        if segment.meets_ground {
+            path.ground = Some((segment.end_m, air.coefficients.transmittance(&columns)));
+        }
+        path
+    }
+
+    /// The same path in pieces that end at the increasing distances `stops_m`, m, and one from the last of them on, with the columns before
+    /// each, m: their light adds up. Stops are clamped to the ends of the path.
+    #[inline(always)]
+    pub fn pieces(
+        air: &Air<N>,
+        grid: Option<&FieldGrid>,
+        marcher: &Marcher<'_>,
+        start: (f64, f64),
+        degree: usize,
+        stops_m: &[f64],
+    ) -> Vec<(PerConstituent, Self)> {
+        let ray = zenith_sun_ray(start);
+        let mut columns = [0.0; MAX_CONSTITUENTS];
+        let mut pieces = Vec::with_capacity(stops_m.len() + 1);
+        let Some(segment) = air.shell().segment(&ray, f64::INFINITY) else {
+            pieces.resize_with(stops_m.len() + 1, || (columns, Self::empty(start)));
+            return pieces;
+        };
+        let mut from_m = segment.start_m;
+        let mut edges = Vec::new();
+        for stop_m in stops_m.iter().copied().chain([f64::INFINITY]) {
+            let span = (from_m, stop_m.clamp(from_m, segment.end_m));
+            let mut piece = Self::empty(start);
+            let before = columns;
+            if span.1 > span.0 {
+                piece.trace(air, grid, marcher, (span, before), degree);
+                let inside = air.columns.along_m(&ray, span, &mut edges);
+                for (sum, column) in columns.iter_mut().zip(inside) {
+                    *sum += column;
+                }
+            }
+            from_m = span.1;
+            pieces.push((before, piece));
+        }
+        if segment.meets_ground
+            && let Some((_, last)) = pieces.last_mut()
+        {
+            last.ground = Some((segment.end_m, air.coefficients.transmittance(&columns)));
+        }
+        pieces
+    }
+
+    fn empty((radius_m, mu): (f64, f64)) -> Self {
+        Self {
             radius_m,
             mu,
             nodes: Vec::new(),
             steps: Vec::new(),
             ground: None,
-        };
-        // With the sun at the zenith no shadow edge crosses the ray, so the steps serve all sun angles.
-        let ray = Ray {
-            radius_m,
-            mu,
-            mu_sun: 1.0,
-            nu: mu,
-        };
-        let Some(segment) = air.shell().segment(&ray, f64::INFINITY) else {
-            return path;
-        };
+        }
+    }
+
+    /// Adds the nodes of a span of distances (m), which has columns before it (m), up to where the path is opaque; returns the columns up
+    /// to there.
+    #[inline(always)]
+    fn trace(
+        &mut self,
+        air: &Air<N>,
+        grid: Option<&FieldGrid>,
+        marcher: &Marcher<'_>,
+        (span, columns_m): ((f64, f64), PerConstituent),
+        degree: usize,
+    ) -> PerConstituent {
+        /// Optical depth beyond which no light arrives.
+        const OPAQUE: f32 = 16.0;
         // Optical depth from the start.
-        let mut before = Spectrum::ZERO;
+        let mut before = air.coefficients.extinction(&columns_m);
+        if before.min_element() > OPAQUE {
+            return columns_m;
+        }
+        let ray = zenith_sun_ray((self.radius_m, self.mu));
+        let from_start = |columns: &PerConstituent| -> PerConstituent {
+            std::array::from_fn(|c| columns_m[c] + columns[c])
+        };
         let columns = marcher.march(
             air.shell(),
             &ray,
-            (segment.start_m, segment.end_m),
+            span,
             &mut Vec::new(),
             #[inline(always)]
             |step| {
-                let first = path.nodes.len();
+                let first = self.nodes.len();
                 let mut panel = Panel::<N>::default();
                 for node in step.nodes {
-                    let depth = air.coefficients.extinction(&node.columns_m);
+                    let columns_m = from_start(&node.columns_m);
+                    let depth = air.coefficients.extinction(&columns_m);
                     let weight = (Spectrum::ZERO - depth).exp() * node.dt as f32;
                     let extinction = air.coefficients.extinction(&node.densities);
                     panel.add(
@@ -353,17 +433,17 @@ impl<const N: usize> Path<N> {
                         extinction * node.dt as f32,
                     );
                     let radius_m = node.here.radius_m;
-                    path.nodes.push(PathNode {
+                    self.nodes.push(PathNode {
                         t: node.t,
                         radius_m,
                         mu: node.here.mu as f32,
                         densities: node.densities,
                         place: grid.map_or(RadialStencil::GROUND, |g| g.place_of_radius(radius_m)),
                         weight,
-                        removed: air.peaks.extinction(&node.columns_m),
+                        removed: air.peaks.extinction(&columns_m),
                         source_weights: Vec::new(),
                         polarised_weights: [Spectrum::ZERO; 3],
-                        linear_gain: linear_gain(air, &node.columns_m),
+                        linear_gain: linear_gain(air, &columns_m),
                         horizon: HorizonPlace::of(
                             radius_m,
                             node.here.mu,
@@ -373,7 +453,7 @@ impl<const N: usize> Path<N> {
                     });
                 }
                 let correct = panel.correction((Spectrum::ZERO - before).exp());
-                for (node, &depth) in path.nodes[first..].iter_mut().zip(&panel.depths) {
+                for (node, &depth) in self.nodes[first..].iter_mut().zip(&panel.depths) {
                     node.weight *= correct.at(depth);
                     node.peak_weight *= node.weight;
                     node.source_weights = (0..=degree)
@@ -384,24 +464,21 @@ impl<const N: usize> Path<N> {
                     node.polarised_weights =
                         [natural, natural * node.linear_gain, kept * node.linear_gain];
                 }
-                path.steps.push(PathStep {
+                self.steps.push(PathStep {
                     from_m: step.from_m,
                     to_m: step.to_m,
-                    columns_m: step.columns_m,
-                    nodes: first..path.nodes.len(),
+                    columns_m: from_start(&step.columns_m),
+                    nodes: first..self.nodes.len(),
                 });
                 before += panel.whole;
-                if before.min_element() > 16.0 {
+                if before.min_element() > OPAQUE {
                     ControlFlow::Break(())
                 } else {
                     ControlFlow::Continue(())
                 }
             },
         );
-        if segment.meets_ground {
-            path.ground = Some((segment.end_m, air.coefficients.transmittance(&columns)));
-        }
-        path
+        from_start(&columns)
     }
 
     /// True if the sun is above the horizontal plane at all nodes of some of the rays.

@@ -1,5 +1,6 @@
 //! Light of a view in two parts that vary slowly with direction, for tables that are interpolated linearly.
 
+use super::block::SampleLight;
 use super::peaked::Peaked;
 use super::table::{SkyTable, TableChannels};
 use super::view::View;
@@ -79,6 +80,11 @@ impl SplitView {
         &self.view
     }
 
+    /// The light of the view without its split, as [`View::table`] with its wavelengths.
+    pub fn table(&self) -> &SkyTable {
+        &self.table
+    }
+
     fn peaked(&self) -> &Peaked {
         &self.table.peaked
     }
@@ -125,40 +131,45 @@ impl SplitView {
         parallel::map(directions.len(), |k| self.radiance(directions[k]))
     }
 
-    /// Air between the eye and each of the increasing distances `distances_m` along the unit vector `direction`; what is beyond the
-    /// end of the ray counts as its end.
-    pub fn paths(&self, direction: DVec3, distances_m: &[f64]) -> Vec<SplitPath> {
+    /// Air between the eye and each of the increasing distances `distances_m` along unit vectors of one elevation, `[direction][distance]`;
+    /// what is beyond the end of a ray counts as its end. Places along the rays are computed once for all of them.
+    pub fn paths(&self, directions: &[DVec3], distances_m: &[f64]) -> Vec<Vec<SplitPath>> {
         let peaked = self.peaked();
         let channels = self.table.channels();
         let solar = self.view.solar_irradiance();
-        let phases = peaked.phases(half_sine(direction.dot(self.view.sun())));
-        let samples =
-            self.view
-                .samples_along_ray(direction, distances_m, &peaked.parts, &(0..channels));
-        let converted = samples.into_iter().map(|sample| {
-            let lit = |values: &[f32]| -> Vec<f32> {
-                values.iter().zip(&solar).map(|(v, e)| v * e).collect()
-            };
-            let mut parts = Vec::new();
-            for (part, values) in peaked.parts.iter().zip(&sample.path[1..]) {
-                let without = lit(values).into_iter().enumerate();
-                parts.extend(without.map(|(channel, value)| {
-                    let phase = phases.get(part.peaked * channels + channel);
-                    value / phase.max(f32::MIN_POSITIVE)
-                }));
-            }
-            SplitPath {
-                smooth: lit(&sample.path[0]),
-                peaked: self.without_phase(direction, &parts),
-                optical_depth: sample.depth,
-            }
-        });
-        converted.collect()
+        let lit = |values: &[f32]| -> Vec<f32> {
+            values.iter().zip(&solar).map(|(v, e)| v * e).collect()
+        };
+        let used = 0..channels;
+        let rays = self
+            .view
+            .samples_along_rays(directions, distances_m, &peaked.parts, &used);
+        let along = |(direction, samples): (&DVec3, Vec<SampleLight>)| {
+            let cos_angle = direction.dot(self.view.sun());
+            let phases = peaked.phases(half_sine(cos_angle));
+            let converted = samples.into_iter().map(|sample| {
+                let mut parts = Vec::new();
+                for (part, values) in peaked.parts.iter().zip(&sample.path[1..]) {
+                    let without = lit(values).into_iter().enumerate();
+                    parts.extend(without.map(|(channel, value)| {
+                        let phase = phases.get(part.peaked * channels + channel);
+                        value / phase.max(f32::MIN_POSITIVE)
+                    }));
+                }
+                SplitPath {
+                    smooth: lit(&sample.path[0]),
+                    peaked: self.without_phase(*direction, &parts),
+                    optical_depth: sample.depth,
+                }
+            });
+            converted.collect()
+        };
+        directions.iter().zip(rays).map(along).collect()
     }
 
-    /// [`SplitView::paths`] along many directions, each with its own distances, on all threads.
-    pub fn many_paths(&self, rays: &[(DVec3, Vec<f64>)]) -> Vec<Vec<SplitPath>> {
-        parallel::map(rays.len(), |k| self.paths(rays[k].0, &rays[k].1))
+    /// [`SplitView::paths`] of many rows of directions, each with its own distances, on all threads.
+    pub fn many_paths(&self, rows: &[(Vec<DVec3>, Vec<f64>)]) -> Vec<Vec<Vec<SplitPath>>> {
+        parallel::map(rows.len(), |k| self.paths(&rows[k].0, &rows[k].1))
     }
 
     /// Light of all parts at once, divided by [`SplitView::phase`], of the light of each part without its phase function.
@@ -204,7 +215,8 @@ mod tests {
             let phase = split.phase(direction.dot(view.sun()));
             let whole = split.radiance(direction);
             let right = view.along(direction, None).radiance();
-            let near = &split.paths(direction, &[3e3])[0];
+            let beside = axes::direction(azimuth + 100.0, elevation);
+            let near = &split.paths(&[beside, direction], &[3e3])[1][0];
             let right_near = view.along(direction, Some(3e3));
             for k in 0..3 {
                 let sum = whole.smooth[k] + phase[k] * whole.peaked[k];

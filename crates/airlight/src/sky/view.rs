@@ -1,7 +1,8 @@
 //! View of a prepared sky from one position under one sun.
 
-use super::block::{BlockLight, SampleLight};
+use super::block::{BlockLight, SampleLight, TableRow};
 use super::peaked::Part;
+use super::ray_bundle::RayBundle;
 use super::settings::SkyError;
 use super::solver::Sky;
 use crate::axes;
@@ -225,40 +226,47 @@ impl View {
         }
     }
 
-    /// Light from the eye to each of the increasing distances `samples_m` along a unit vector: optical depths, one per
-    /// wavelength, and path radiance per unit solar irradiance, first the smooth light and then each part without its share.
-    /// Wavelengths whose indices are not in `used` may be left at 0.
-    pub(crate) fn samples_along_ray(
+    /// Light from the eye to each of the increasing distances `samples_m` along unit vectors of one elevation, `[direction][sample]`:
+    /// optical depths, one per wavelength, and path radiance per unit solar irradiance, first the smooth light and then each part
+    /// without its share. Wavelengths whose indices are not in `used` may be left at 0.
+    pub(crate) fn samples_along_rays(
         &self,
-        direction: DVec3,
+        directions: &[DVec3],
         samples_m: &[f64],
         parts: &[Part],
         used: &Range<usize>,
-    ) -> Vec<SampleLight> {
-        let ray = self.ray(direction);
+    ) -> Vec<Vec<SampleLight>> {
+        let rays: Vec<Ray> = directions.iter().map(|&d| self.ray(d)).collect();
+        let Some(first) = rays.first() else {
+            return Vec::new();
+        };
+        let mut row = TableRow {
+            start: (first.radius_m, first.mu),
+            bundle: RayBundle::default(),
+        };
+        for ray in &rays {
+            row.bundle.push(ray.mu_sun, ray.nu);
+        }
         let nothing = SampleLight {
             depth: Vec::new(),
             path: vec![Vec::new(); 1 + parts.len()],
         };
-        let mut all = vec![nothing; samples_m.len()];
+        let mut all = vec![vec![nothing; samples_m.len()]; rays.len()];
         let mut first = 0;
         for block in self.sky.blocks() {
             let lanes = first..first + block.lanes();
             first = lanes.end;
             if lanes.start >= used.end || lanes.end <= used.start {
-                for sample in &mut all {
+                for sample in all.iter_mut().flatten() {
                     sample.depth.resize(lanes.end, 0.0);
-                    sample
-                        .path
-                        .iter_mut()
-                        .for_each(|part| part.resize(lanes.end, 0.0));
+                    for part in &mut sample.path {
+                        part.resize(lanes.end, 0.0);
+                    }
                 }
                 continue;
             }
-            for (sample, more) in all
-                .iter_mut()
-                .zip(block.samples_along_ray(&ray, samples_m, parts))
-            {
+            let more = block.samples_along_rays(&row, samples_m, parts);
+            for (sample, more) in all.iter_mut().flatten().zip(more.into_iter().flatten()) {
                 sample.depth.extend(more.depth);
                 for (part, more) in sample.path.iter_mut().zip(more.path) {
                     part.extend(more);

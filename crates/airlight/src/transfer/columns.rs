@@ -13,7 +13,7 @@ use crate::math::real::Real;
 use crate::spectrum::Spectrum;
 use crate::transfer::march::panel_edges;
 use crate::transfer::ray::Ray;
-use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent, Shell, divided};
+use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent, Shell, count_evaluation, divided};
 
 /// Intervals of the table in an octave of `1 + mu / scale`, as a power of two.
 const OCTAVE_BITS: u32 = 2;
@@ -334,6 +334,7 @@ impl SlantColumns {
             let panel = &self.panels[interval_of(&self.radii_m, middle)];
             let top = panel.top_m;
             for (t, dt) in NODES.on(edge[0], edge[1]) {
+                count_evaluation();
                 let radius = ray.radius_at(t);
                 let x = (top - radius) * (top + radius) / (top * top * panel.width);
                 let [p0, p1, p2, p3] = &panel.columns_m;

@@ -16,3 +16,4 @@ pub(crate) mod shell;
 
 pub(crate) use path_optics::PathOptics;
 pub use path_optics::RgbPathOptics;
+pub use shell::medium_evaluations;

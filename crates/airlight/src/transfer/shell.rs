@@ -2,6 +2,7 @@
 
 use crate::atmosphere::{Atmosphere, DensityProfile};
 use crate::transfer::ray::{AirSegment, Ray};
+use std::cell::Cell;
 
 /// Largest number of constituents.
 pub const MAX_CONSTITUENTS: usize = 8;
@@ -11,6 +12,22 @@ pub type PerConstituent = [f64; MAX_CONSTITUENTS];
 
 /// Vertical optical depth at any visible wavelength up to which an absorber needs few panels along rays.
 const WEAK_ABSORBER: f64 = 0.05;
+
+thread_local! {
+    static EVALUATIONS: Cell<u64> = const { Cell::new(0) };
+}
+
+/// Number of points at which this thread has evaluated the densities of an atmosphere to integrate along rays: the work of a solution,
+/// a table or a ray is a difference of two such numbers, on a single thread.
+pub fn medium_evaluations() -> u64 {
+    EVALUATIONS.get()
+}
+
+/// Counts one of the [`medium_evaluations`].
+#[inline(always)]
+pub(super) fn count_evaluation() {
+    EVALUATIONS.set(EVALUATIONS.get() + 1);
+}
 
 /// An atmosphere with more than [`MAX_CONSTITUENTS`] constituents, and how many it has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,9 +124,10 @@ impl Shell {
         self.top_radius_m - self.ground_radius_m
     }
 
-    /// Relative densities at a radius.
+    /// Relative densities at a radius. Counts as one of the [`medium_evaluations`].
     #[inline(always)]
     pub fn densities_at(&self, radius_m: f64) -> PerConstituent {
+        count_evaluation();
         let mut out = [0.0; MAX_CONSTITUENTS];
         for (value, profile) in out.iter_mut().zip(&self.densities) {
             *value = profile.at(radius_m - self.planet_radius_m);
