@@ -29,6 +29,8 @@ pub(crate) struct SolvedView {
     /// The moon that lights the view in the place of the sun.
     moon: Option<MoonState>,
     irradiance: OnceLock<IrradianceMap>,
+    /// Irradiance of a horizontal surface by the sky.
+    horizontal_irradiance: OnceLock<Vec<f32>>,
 }
 
 impl View {
@@ -88,6 +90,7 @@ impl SolvedView {
             disc: OnceLock::new(),
             moon: None,
             irradiance: OnceLock::new(),
+            horizontal_irradiance: OnceLock::new(),
         })
     }
 
@@ -247,13 +250,17 @@ impl RadianceView for SolvedView {
     fn horizontal_irradiance(&self, out: &mut [f32]) {
         /// Number of rings, and of directions in each.
         const DIRECTIONS: (usize, usize) = (60, 120);
-        if self.fog.is_none() {
-            out.copy_from_slice(&self.clear.irradiance(DVec3::Y));
-            return;
-        }
-        horizontal_irradiance_of(DIRECTIONS, out, |direction, values| {
-            self.sample(direction, values);
+        let irradiance = self.horizontal_irradiance.get_or_init(|| {
+            if self.fog.is_none() {
+                return self.clear.irradiance(DVec3::Y);
+            }
+            let mut sum = vec![0.0; self.clear.channels()];
+            horizontal_irradiance_of(DIRECTIONS, &mut sum, |direction, values| {
+                self.sample(direction, values);
+            });
+            sum
         });
+        out.copy_from_slice(irradiance);
     }
 
     fn sun_irradiance(&self, out: &mut [f32]) {

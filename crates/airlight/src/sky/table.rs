@@ -285,7 +285,7 @@ impl SkyTable {
     /// Irradiance on a surface with the unit normal `normal` from sky and ground, without the sun's disc, one value per channel
     /// (W m^-2 nm^-1, or lux for RGB channels).
     ///
-    /// A sum over about 25 000 directions, denser towards the horizon as in the table; accurate to 0.1 % for skies whose
+    /// A sum over up to 25 000 directions, denser towards the horizon as in the table; accurate to 0.1 % for skies whose
     /// aureole is wider than a degree.
     pub fn irradiance(&self, normal: DVec3) -> Vec<f32> {
         let mut out = vec![0.0; self.channels];
@@ -308,6 +308,10 @@ impl SkyTable {
             for (x, w) in rule.on(0.0, 1.0) {
                 let elevation = self.horizon_elevation + half.span * x * x;
                 let (sin, cos) = elevation.sin_cos();
+                let reaches = |n: &DVec3| sin * n.y + cos * n.x.hypot(n.z) > 0.0;
+                if !normals.iter().any(reaches) {
+                    continue;
+                }
                 let solid_angle =
                     w * 2.0 * x * half.span.abs() * cos * 2.0 * PI / AZIMUTH_SAMPLES as f64;
                 let ring: [DVec3; AZIMUTH_SAMPLES] = std::array::from_fn(|k| {
