@@ -69,21 +69,23 @@ impl<const N: usize> Light<N> {
             .collect()
     }
 
-    /// Largest fraction of the intensity, at any point that counts ([`Light::least`]), that a correction changes.
-    pub fn change_by(&self, correction: &Self) -> f32 {
+    /// Largest fraction of the intensity that a correction changes at any point that counts ([`Light::least`]): under the first suns,
+    /// as many as `set`, and under the others.
+    pub fn change_by(&self, correction: &Self, set: usize) -> [f32; 2] {
         let (count, suns, least) = (self.count, self.ground.len(), self.least());
-        let mut change = 0.0f32;
+        let mut changes = [0.0f32; 2];
         let points = self.moments.chunks_exact(count);
         let corrections = correction.moments.chunks_exact(count);
         for (place, (point, correction)) in points.zip(corrections).enumerate() {
             let scale = admissible(point[0], correction[0]);
             let corrected = point[0].mul_acc(correction[0], scale);
             let value = brighter(corrected, least[place % suns]);
-            change = (0..N).fold(change, |change, lane| {
+            let change = &mut changes[usize::from(place % suns >= set)];
+            *change = (0..N).fold(*change, |change, lane| {
                 change.max((correction[0][lane] * scale[lane] / value[lane]).abs())
             });
         }
-        change
+        changes
     }
 
     /// Adds a correction, limited where it would leave no light or more moments than light has.

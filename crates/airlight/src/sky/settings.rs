@@ -54,7 +54,8 @@ pub struct OrderSettings {
     pub first: Directions,
     /// Directions for all later orders, which are smoother.
     pub later: Directions,
-    /// Relative error of the intensity at any point of the grid below which the iteration ends.
+    /// Relative error of the intensity below which the iteration ends, at any point of the grid under a sun above the horizon; under
+    /// others eight times as much.
     pub tolerance: f32,
     /// Number of iterations after which the solver gives up.
     pub max_iterations: usize,
@@ -97,7 +98,7 @@ impl Default for SkySettings {
                     panel_nodes: 2,
                 },
                 tolerance: 0.002,
-                max_iterations: 40,
+                max_iterations: 100,
                 only_orders: None,
             },
         }

@@ -98,7 +98,7 @@ impl Sky {
 
     /// Estimated relative error of the iteration for light scattered more than once: the largest over heights, suns and
     /// wavelengths, below [`OrderSettings::tolerance`](super::OrderSettings::tolerance); 0 for a given number of orders. Errors
-    /// of the resolution come on top.
+    /// under suns below the horizon count an eighth. Errors of the resolution come on top.
     pub fn iteration_error(&self) -> f32 {
         let blocks = self.0.blocks.iter();
         blocks
