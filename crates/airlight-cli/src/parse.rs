@@ -3,7 +3,7 @@
 pub mod words;
 
 use airlight::Named;
-use airlight::scene::Exposure;
+use airlight::scene::{CameraExposureError, Exposure};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::fmt::Display;
 use std::ops::RangeInclusive;
@@ -252,13 +252,17 @@ pub fn span(text: &str) -> Result<String, String> {
         .map_err(|right| format!("expected {right}"))
 }
 
-/// An exposure: a metering mode, or an exposure value at ISO 100.
+/// An exposure: a metering mode, an exposure value at ISO 100, or the settings of a camera.
 pub fn exposure(text: &str) -> Result<Exposure, String> {
+    if text.starts_with(['f', 'F']) {
+        let camera = text.parse().map(Exposure::Camera);
+        return camera.map_err(|error: CameraExposureError| error.to_string());
+    }
     match (number(text), text.to_ascii_lowercase().parse()) {
         (Ok(ev100), _) => Ok(Exposure::Ev100(ev100)),
         (_, Ok(mode)) => Ok(Exposure::Metered(mode)),
         (_, Err(unknown)) => Err(format!(
-            "{unknown}, or give an exposure value at ISO 100, such as 14.5"
+            "{unknown}, or give an exposure value at ISO 100, such as 14.5, or the settings of a camera, such as 'f/8 1/125 s ISO 100'"
         )),
     }
 }

@@ -14,7 +14,11 @@ pub fn run(args: &ViewArgs) -> Result<(), CliError> {
     use std::path::Path;
 
     let usual = Options::default();
-    let scene = args.read(usual.state.scene)?;
+    let state = match &args.file {
+        Some(file) => State::load(file)?,
+        None => usual.state,
+    };
+    let scene = args.over(state.scene)?;
     scene.validate()?;
     let size = scene.camera.size.map_or(usual.size, |size| {
         let size = size.map(|v| v as f32);
@@ -30,7 +34,9 @@ pub fn run(args: &ViewArgs) -> Result<(), CliError> {
     });
     let options = Options {
         state: State {
-            terrain,
+            terrain: terrain.or(state.terrain),
+            compare: state.compare,
+            photograph: state.photograph,
             ..State::of_scene(scene)
         },
         size,
@@ -60,7 +66,11 @@ const LARGEST_SIDE: f32 = 1920.0;
 /// Always.
 #[cfg(not(feature = "view"))]
 pub fn run(args: &ViewArgs) -> Result<(), CliError> {
-    args.read(airlight::scene::Scene::default())?;
+    let scene = match &args.file {
+        Some(file) => airlight_render::scene_file::load(file)?,
+        None => airlight::scene::Scene::default(),
+    };
+    args.over(scene)?;
     Err(CliError::failure(
         "this program was built without the viewer; try \
          cargo install --locked --path crates/airlight-cli --features view",

@@ -118,15 +118,20 @@ impl Fog {
         profile(&self.layer.density)
     }
 
-    /// The fog as lights see it, in which heights count from the ground; `None` for a fog that is not exponential.
+    /// The fog as lights see it, in which heights count from the ground; `None` for a fog that is not exponential above the ground.
     pub(crate) fn around_lights(&self) -> Option<ExponentialFog> {
         /// Wavelength at which the mean cosine of the phase function is taken, nm.
         const MEAN_COSINE_NM: f64 = 550.0;
         let (profile, reference_height_m, scale_height_m) = self.profile()?;
+        let is_exponential = match profile {
+            FOG_EXPONENTIAL => true,
+            FOG_CLAMPED => reference_height_m <= self.ground_height_m,
+            _ => false,
+        };
         let layer = &self.layer;
         let extinction_per_m = Vec3::from_array(layer.extinction_per_m);
         let albedo = Vec3::from_array(layer.single_scattering_albedo);
-        (profile == FOG_EXPONENTIAL).then_some(ExponentialFog {
+        is_exponential.then_some(ExponentialFog {
             medium: FogMedium {
                 extinction_per_m,
                 scattering_per_m: extinction_per_m * albedo,
@@ -148,7 +153,7 @@ pub struct FogFrame {
     pub layer: FogLayer,
     /// Height of the eye above the ground, m.
     pub eye_height_m: f32,
-    /// The fog around lights; `None` if it is not exponential.
+    /// The fog around lights; `None` if it is not exponential above the ground.
     pub around_lights: Option<ExponentialFog>,
 }
 

@@ -3,9 +3,8 @@
 
 use crate::camera::{Camera, Projection};
 use crate::pass::bytes;
-use crate::read::{ReadTextureError, read_texture};
+use crate::read::{ReadTextureError, read_rgb};
 use glam::{Mat4, Vec3};
-use half::f16;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// Format of the target of [`Headless::draw`].
@@ -294,15 +293,8 @@ impl Headless {
         encoder: wgpu::CommandEncoder,
         target: &wgpu::Texture,
     ) -> Result<Vec<[f32; 3]>, HeadlessError> {
-        const PIXEL_BYTES: usize = 8;
         self.queue.submit([encoder.finish()]);
-        let bytes = read_texture(&self.device, &self.queue, target)?;
-        let (pixels, _) = bytes.as_chunks::<PIXEL_BYTES>();
-        let channel = |pixel: &[u8; PIXEL_BYTES], c: usize| {
-            f16::from_ne_bytes([pixel[2 * c], pixel[2 * c + 1]]).to_f32()
-        };
-        let rgb = |pixel| std::array::from_fn(|c| channel(pixel, c));
-        Ok(pixels.iter().map(rgb).collect())
+        Ok(read_rgb(&self.device, &self.queue, target)?)
     }
 }
 

@@ -39,7 +39,7 @@ pub use lighting::Lighting;
 pub use lights::MOST_LIGHTS;
 pub use passes::SkyPasses;
 #[cfg(not(target_arch = "wasm32"))]
-pub use read::{ReadTextureError, read_texture};
+pub use read::{ReadTextureError, read_rgb, read_texture};
 pub use renderer::{SkyRenderer, SkyRendererSettings, Work};
 pub use terrain::{HeightField, TerrainPass, TerrainView};
 pub use tone::{ToneCurve, TonePass, ToneSettings};

@@ -110,7 +110,8 @@ impl SkyPasses {
     /// Sets the lights that shine in the fog from now on, at most [`MOST_LIGHTS`](crate::MOST_LIGHTS), instead of those before. Their
     /// positions are around the eye, y up; light is in cd and cd/m^2. Nothing is computed on the processor, so that they may move in each
     /// frame. The fog scatters their light once, as Henyey and Greenstein's function of its mean cosine does. They are not drawn
-    /// themselves, add nothing to [`SkyPasses::lighting`] and environment maps, and shine in exponential fog only.
+    /// themselves, add nothing to [`SkyPasses::lighting`] and environment maps, and shine only in fog that is exponential
+    /// above the ground.
     ///
     /// # Errors
     /// [`SkyRendererError`] for invalid lights, and for more than there may be.

@@ -1,5 +1,7 @@
 //! Pixels of textures, read back from the device.
 
+use half::f16;
+
 /// Error of [`read_texture`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cannot read the pixels of a frame, as with a device that is lost: {0}")]
@@ -50,4 +52,28 @@ pub fn read_texture(
         .map_err(|error| failed(&error))?;
     let rows = bytes.chunks(bytes_per_row as usize);
     Ok(rows.flat_map(|of| &of[..row as usize]).copied().collect())
+}
+
+/// Red, green and blue of a texture of `Rgba16Float` that may be copied from, row by row. Waits for the device.
+///
+/// # Errors
+/// [`ReadTextureError`] if the device is lost, and for another format.
+pub fn read_rgb(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    texture: &wgpu::Texture,
+) -> Result<Vec<[f32; 3]>, ReadTextureError> {
+    const TEXEL_BYTES: usize = 8;
+    let (right, format) = (wgpu::TextureFormat::Rgba16Float, texture.format());
+    if format != right {
+        return Err(ReadTextureError(format!(
+            "expected {right:?}, got {format:?}"
+        )));
+    }
+    let bytes = read_texture(device, queue, texture)?;
+    let channel = |texel: &[u8; TEXEL_BYTES], c: usize| {
+        f16::from_ne_bytes([texel[2 * c], texel[2 * c + 1]]).to_f32()
+    };
+    let rgb = |texel| std::array::from_fn(|c| channel(texel, c));
+    Ok(bytes.as_chunks().0.iter().map(rgb).collect())
 }

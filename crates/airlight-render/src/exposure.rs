@@ -67,9 +67,11 @@ impl ExposureSettings {
     /// The exposure settings of a scene's output.
     pub fn of(output: &OutputSpec) -> Self {
         let (ev100, metering) = match output.exposure {
-            Some(scene::Exposure::Ev100(ev100)) => (Some(ev100), MeteringMode::default()),
             Some(scene::Exposure::Metered(mode)) => (None, mode),
-            None => (None, MeteringMode::default()),
+            other => (
+                other.and_then(scene::Exposure::ev100),
+                MeteringMode::default(),
+            ),
         };
         Self {
             ev100,

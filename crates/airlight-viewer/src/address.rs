@@ -1,29 +1,20 @@
 //! A [`State`] as the fragment of a web address: its version, and what is set, as `table.key=value`, separated by `&`. Values are in the
 //! notation of scene files, with strings in single quotes, which addresses may contain.
 
-use crate::state::{STATE_VERSION, State};
-use airlight::scene::Scene;
+use crate::state::State;
 use std::fmt::Write;
 use toml::{Table, Value};
 
-/// The tables of the comparison and of the terrain, beside those of the scene.
-const COMPARE: &str = "compare";
-const TERRAIN: &str = "terrain";
+/// Version of the fragments that this viewer reads and writes.
+const VERSION: &str = "1";
 
 impl State {
     /// The state as a fragment, without `#`. Numbers keep seven digits.
     pub fn to_fragment(&self) -> String {
-        let table = self.scene.to_toml().ok();
+        let table = self.to_toml().ok();
         let table: Table = table.and_then(|t| t.parse().ok()).unwrap_or_default();
-        let mut pairs = vec![STATE_VERSION.to_string()];
+        let mut pairs = vec![VERSION.to_owned()];
         flatten(&mut pairs, "", &table);
-        let compare = self.compare.as_ref().map(Table::try_from);
-        let terrain = self.terrain.as_ref().map(Table::try_from);
-        for (name, table) in [(COMPARE, compare), (TERRAIN, terrain)] {
-            if let Some(Ok(table)) = table {
-                flatten(&mut pairs, &format!("{name}."), &table);
-            }
-        }
         encoded(&pairs.join("\n"))
     }
 
@@ -34,22 +25,12 @@ impl State {
     pub fn from_fragment(fragment: &str) -> Result<Self, String> {
         let text = decoded(fragment).ok_or("expected an encoded scene in the address")?;
         let (version, scene) = text.split_once('\n').unwrap_or((&text, ""));
-        if version != STATE_VERSION.to_string() {
+        if version != VERSION {
             return Err(format!(
-                "expected a scene of version {STATE_VERSION} in the address, got {version:?}"
+                "expected a scene of version {VERSION} in the address, got {version:?}"
             ));
         }
-        let mut table: Table = scene
-            .parse()
-            .map_err(|error: toml::de::Error| error.to_string())?;
-        let compare = table.remove(COMPARE).map(Value::try_into).transpose();
-        let terrain = table.remove(TERRAIN).map(Value::try_into).transpose();
-        let scene = Scene::from_toml(&table.to_string()).map_err(|error| error.to_string())?;
-        Ok(Self {
-            compare: compare.map_err(|error| error.to_string())?,
-            terrain: terrain.map_err(|error| error.to_string())?,
-            ..Self::of_scene(scene)
-        })
+        Self::from_toml(scene).map_err(|error| error.to_string())
     }
 }
 
@@ -119,6 +100,7 @@ fn decoded(fragment: &str) -> Option<String> {
 mod tests {
     use super::*;
     use crate::state::{Compare, CompareMode, Terrain};
+    use airlight::scene::Scene;
 
     #[test]
     fn states_return_from_addresses() {
@@ -127,6 +109,7 @@ mod tests {
         let scene = Scene::from_toml(text).unwrap();
         let compared = State {
             compare: Some(Compare {
+                left: Some("orders".to_owned()),
                 model: "preetham".to_owned(),
                 mode: CompareMode::Luminance,
                 split: 0.5,
@@ -139,7 +122,14 @@ mod tests {
             }),
             ..State::default()
         };
-        for state in [State::default(), compared, State::of_scene(scene)] {
+        let camera = "output = { exposure = \"f/8 1/125 s ISO 100\", white_balance_k = 5000 }";
+        let photograph = State::of_scene(Scene::from_toml(camera).unwrap());
+        for state in [
+            State::default(),
+            compared,
+            photograph,
+            State::of_scene(scene),
+        ] {
             let fragment = state.to_fragment();
             let allowed = |c: char| c.is_ascii_alphanumeric() || "-._~=',:/&%".contains(c);
             assert!(fragment.starts_with("1&"), "{fragment}");

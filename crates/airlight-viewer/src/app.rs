@@ -1,17 +1,19 @@
 //! [`Viewer`]: state, light and picture together.
 
-use crate::beside::{Beside, Comparison, Wanted};
+use crate::beside::{Beside, Comparison, Sides, Wanted};
 use crate::command::command_line;
 use crate::compute::{Answer, Facts, Light, Output, Request, SPACE, Task};
 use crate::examples::{self, EXAMPLES};
 use crate::options::Options;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::photograph::{self, Darkroom, Developed};
 use crate::picture::{Ground, Picture, Shot, tone_mapper, tone_of};
 use crate::platform::Worker;
 use crate::play::Play;
-use crate::state::{CompareMode, History, State, Terrain};
-use crate::terrain;
+use crate::state::{CompareMode, History, State};
 use crate::widgets::choice;
-use crate::{panel, reading, style, truth, view};
+use crate::{lights, panel, reading, style, terrain, truth, view};
+use airlight::fog::lights::Light as FogLight;
 use airlight::scene::{OutputSpec, Scene};
 use airlight_gpu::{HeightField, SkyRendererError};
 use airlight_image::Frame;
@@ -21,6 +23,8 @@ use airlight_image::tone::Exposure;
 #[cfg(not(target_arch = "wasm32"))]
 use airlight_image::{Control, PictureOptions, Size, write_picture};
 use airlight_render::exposure::{ExposureSettings, METERED_WIDTH, MeteredPicture};
+#[cfg(not(target_arch = "wasm32"))]
+use airlight_render::overlay::{OverlayScene, OverlaySpec};
 use eframe::egui::{self, Align2, Color32, FontId, Key, Rect, TextureId, Ui, pos2, vec2};
 use eframe::egui_wgpu::RenderState;
 use eframe::wgpu;
@@ -33,8 +37,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Longest time that passes between two frames, s: after a pause, time goes on from where it stood.
 const LONGEST_FRAME_S: f32 = 0.1;
-/// The command for a scene that is saved.
-const FROM_FILE: &str = "airlight sky --scene scene.toml -o sky.png";
 
 /// Why there is no viewer.
 #[derive(Debug, thiserror::Error)]
@@ -83,14 +85,16 @@ pub struct Viewer {
     history: History,
     has_panel: bool,
     play: Play,
+    /// Pixels of the display along a pixel of the picture: more draw faster.
+    coarseness: u32,
     dragged: Option<view::Handle>,
     worker: Worker,
     /// Taken out while it works with what else is here.
     beside: Option<Beside>,
     /// Direction whose spectrum is shown.
     direction: Option<DVec3>,
-    /// The comparison on the screen, and what of it.
-    compared: Option<(Compared, egui::TextureHandle)>,
+    /// The comparison on the screen, and what of it: the right side or the map, and the left side if that is a model.
+    compared: Option<(Compared, [Option<egui::TextureHandle>; 2])>,
     number: u64,
     /// The scene that light is being computed for.
     asked: Option<Scene>,
@@ -107,9 +111,17 @@ pub struct Viewer {
     /// Why the camera draws no picture.
     unframed: Option<String>,
     terrain: Option<LoadedTerrain>,
+    /// The lights in the picture, or why there are none.
+    lights: Result<Vec<FogLight<[f32; 3]>>, String>,
+    #[cfg(not(target_arch = "wasm32"))]
+    darkroom: Darkroom,
+    /// The photograph on the screen, and what it was fogged with.
+    #[cfg(not(target_arch = "wasm32"))]
+    developed: Option<(OverlayScene, egui::TextureHandle)>,
     /// Why a file was not opened or saved.
     notice: Option<String>,
     /// Name of a file to open or save.
+    #[cfg(not(target_arch = "wasm32"))]
     file: String,
     /// Whether the graphics device is gone.
     is_lost: Arc<AtomicBool>,
@@ -155,6 +167,8 @@ impl Viewer {
         style::apply(context);
         let repaint = context.clone();
         let beside = context.clone();
+        #[cfg(not(target_arch = "wasm32"))]
+        let darkroom = context.clone();
         let is_lost = Arc::new(AtomicBool::new(false));
         let lost = is_lost.clone();
         render
@@ -167,6 +181,7 @@ impl Viewer {
             history: History::default(),
             has_panel: options.panel,
             play: Play::default(),
+            coarseness: 1,
             dragged: None,
             worker: Worker::new(move || repaint.request_repaint()),
             beside: Some(Beside::new(move || beside.request_repaint())),
@@ -185,7 +200,13 @@ impl Viewer {
             frames: 0,
             unframed: None,
             terrain: None,
+            lights: Ok(Vec::new()),
+            #[cfg(not(target_arch = "wasm32"))]
+            darkroom: Darkroom::new(move || darkroom.request_repaint()),
+            #[cfg(not(target_arch = "wasm32"))]
+            developed: None,
             notice: None,
+            #[cfg(not(target_arch = "wasm32"))]
             file: "scene.toml".to_owned(),
         })
     }
@@ -212,6 +233,10 @@ impl Viewer {
 
     /// Whether the picture shows the state: nothing is being computed.
     pub fn is_current(&self) -> bool {
+        #[cfg(not(target_arch = "wasm32"))]
+        if let Some(scene) = self.fogged() {
+            return self.darkroom.is_current(&scene);
+        }
         let has_light =
             self.asked.is_none() && self.answered.as_ref() == Some(&self.state.lit_scene());
         let beside = self.beside.as_ref().zip(self.wanted());
@@ -310,6 +335,25 @@ impl Viewer {
         heights?.as_ref().err().map(String::as_str)
     }
 
+    /// Why no light of the scene shines, as a sentence.
+    pub fn light_error(&self) -> Option<&str> {
+        self.lights.as_ref().err().map(String::as_str)
+    }
+
+    /// The photograph in fog that is shown.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn photograph(&self) -> Option<Result<&Developed, &str>> {
+        self.state.photograph.as_ref()?;
+        self.darkroom.answer()
+    }
+
+    /// The photograph and its fog.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn fogged(&self) -> Option<OverlayScene> {
+        let photograph = self.state.photograph.clone()?;
+        Some(self.state.fogged(photograph))
+    }
+
     /// Shows the controls and the picture.
     pub fn show(&mut self, ui: &mut Ui) {
         self.take_answers();
@@ -332,16 +376,22 @@ impl Viewer {
                         ui.heading("Airlight");
                         self.show_actions(ui);
                         let state = &mut self.state;
-                        panel::show(ui, state, &mut self.play, &facts, ev100);
+                        let (play, coarseness) = (&mut self.play, &mut self.coarseness);
+                        panel::show(ui, state, (play, coarseness), &facts, ev100);
                     });
                 });
         }
         egui::CentralPanel::default()
             .frame(egui::Frame::NONE.fill(Color32::BLACK))
-            .show(ui, |ui| self.show_picture(ui));
-        self.stand_on_terrain();
-        self.ask();
-        self.update_beside();
+            .show(ui, |ui| match self.state.photograph.is_some() {
+                true => self.show_photograph(ui),
+                false => self.show_picture(ui),
+            });
+        if self.state.photograph.is_none() {
+            self.stand_on_terrain();
+            self.ask();
+            self.update_beside();
+        }
         self.settle(ui);
     }
 
@@ -372,11 +422,9 @@ impl Viewer {
             if button(ui, true, "Reset") {
                 self.state = State::default();
             }
-            let command = command_line(&self.state.scene);
-            let text = command.clone().unwrap_or_else(|| FROM_FILE.to_owned());
-            let copy = ui.button("Copy command").on_hover_text(text);
+            let command = command_line(&self.state);
+            let copy = ui.button("Copy command").on_hover_text(&command);
             if copy.clicked() {
-                let command = command.unwrap_or_else(|| FROM_FILE.to_owned());
                 ui.ctx().copy_text(command);
             }
         });
@@ -409,24 +457,32 @@ impl Viewer {
         });
     }
 
-    /// Opens a scene file, or a file of heights as terrain.
+    /// Opens a scene file, a photograph (a picture with colours), its depth if there is one, or else heights as terrain.
     ///
     /// # Errors
     /// A sentence where a scene cannot be read or is invalid.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn open(&mut self, file: &Path) -> Result<(), String> {
-        if terrain::is_name(file) {
-            self.state.terrain = Some(Terrain {
+        if photograph::has_colours(file) {
+            self.state = State {
+                photograph: Some(OverlaySpec {
+                    colour: file.to_owned(),
+                    ..Default::default()
+                }),
+                ..photograph::usual_state()
+            };
+        } else if let Some(photograph) = &mut self.state.photograph
+            && terrain::is_name(file)
+        {
+            photograph.depth = Some(file.to_owned());
+        } else if terrain::is_name(file) {
+            self.state.terrain = Some(crate::state::Terrain {
                 file: Some(file.display().to_string()),
                 ..Default::default()
             });
-            return Ok(());
+        } else {
+            self.state = State::load(file).map_err(|error| error.to_string())?;
         }
-        let scene = airlight_render::scene_file::load(file).map_err(|error| error.to_string())?;
-        self.state = State {
-            terrain: self.state.terrain.clone(),
-            ..State::of_scene(scene)
-        };
         Ok(())
     }
 
@@ -438,13 +494,12 @@ impl Viewer {
     #[cfg(not(target_arch = "wasm32"))]
     pub fn save(&mut self, file: &Path) -> Result<(), String> {
         if file.extension().is_some_and(|ending| ending == "toml") {
-            let text = self
-                .state
-                .scene
-                .to_toml()
-                .map_err(|error| error.to_string())?;
+            let text = self.state.to_toml()?;
             return std::fs::write(file, text)
                 .map_err(|error| format!("cannot write `{}`: {error}", file.display()));
+        }
+        if let Some(scene) = self.fogged() {
+            return photograph::save(&scene, file).map_err(|error| error.to_string());
         }
         let shot = self.saved_shot()?;
         let mapper = tone_mapper(&self.state.scene.output, shot.exposure);
@@ -539,7 +594,14 @@ impl Viewer {
             scene: self.answered.as_ref()?,
             frame: shot.frame,
             direction: self.direction,
-            model: compare.map(|compare| (compare.model.as_str(), compared_size(shot.size()))),
+            sides: compare.map(|compare| {
+                let (left, right) = (compare.left.as_deref(), compare.model.as_str());
+                Sides {
+                    left,
+                    right,
+                    size: compared_size(shot.size(), [left, Some(right)]),
+                }
+            }),
         })
     }
 
@@ -553,9 +615,13 @@ impl Viewer {
         }
     }
 
-    /// Waits for the light that is being computed.
+    /// Waits for the light or the photograph that is being computed.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn wait(&mut self) {
+        if self.state.photograph.is_some() {
+            self.darkroom.wait();
+            return;
+        }
         if self.asked.is_some()
             && let Some(answer) = self.worker.wait()
         {
@@ -615,7 +681,7 @@ impl Viewer {
     fn show_picture(&mut self, ui: &mut Ui) {
         let area = ui.available_rect_before_wrap();
         let rect = view::part_of(area, &self.state);
-        let scale = ui.pixels_per_point();
+        let scale = ui.pixels_per_point() / self.coarseness as f32;
         let size = [rect.width(), rect.height()].map(|v| ((v * scale).round() as u32).max(1));
         match view::frame_of(&self.state, size, self.facts().sun_azimuth_deg) {
             Ok(frame) => {
@@ -635,6 +701,42 @@ impl Viewer {
         }
     }
 
+    /// Shows the photograph in fog, as large as fits.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn show_photograph(&mut self, ui: &mut Ui) {
+        let area = ui.available_rect_before_wrap();
+        if let Some(scene) = self.fogged() {
+            self.darkroom.update(&scene);
+        }
+        if let Some(Ok(developed)) = self.darkroom.answer() {
+            let is_shown = |(of, _): &(OverlayScene, _)| *of == developed.scene;
+            if !self.developed.as_ref().is_some_and(is_shown) {
+                let size = developed.size.map(|v| v as usize);
+                let image = egui::ColorImage::from_rgb(size, &developed.rgb);
+                let options = egui::TextureOptions::LINEAR;
+                let texture = ui.ctx().load_texture("photograph", image, options);
+                self.developed = Some((developed.scene.clone(), texture));
+                self.frames += 1;
+            }
+        }
+        if let Some((_, texture)) = &self.developed {
+            let size = texture.size_vec2();
+            let scale = (area.size() / size).min_elem();
+            let at = Rect::from_center_size(area.center(), size * scale);
+            let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+            ui.painter().image(texture.id(), at, whole, Color32::WHITE);
+        }
+        self.show_notes(ui, area);
+    }
+
+    /// States that a page reads no files.
+    #[cfg(target_arch = "wasm32")]
+    fn show_photograph(&mut self, ui: &mut Ui) {
+        self.notice =
+            Some("expected a sky, got a photograph, which the page cannot read".to_owned());
+        self.show_notes(ui, ui.available_rect_before_wrap());
+    }
+
     /// Shows the picture of a frame in a rectangle, and takes the input on it.
     fn show_frame(&mut self, ui: &mut Ui, rect: Rect, frame: Frame) {
         let response = view::interact(ui, rect, &mut self.state, &frame, &mut self.dragged);
@@ -649,8 +751,8 @@ impl Viewer {
         }
         if let Some(texture) = self.texture {
             let size = [frame.size().width(), frame.size().height()];
-            let scale = ui.pixels_per_point();
-            // Texels lie on pixels.
+            let scale = ui.pixels_per_point() / self.coarseness as f32;
+            // Texels lie on pixels, one on each or one on several.
             let shown = vec2(size[0] as f32, size[1] as f32) / scale;
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             let at = Rect::from_min_size(rect.min, shown);
@@ -662,6 +764,22 @@ impl Viewer {
         }
     }
 
+    /// Puts the scene's lights into the picture. True if they are others than before.
+    fn shine(&mut self, frame: &Frame) -> bool {
+        let Some(light) = &self.light else {
+            return false;
+        };
+        let eye_height_m = f64::from(light.tables.sky.view.height_m);
+        let around = lights::around(&self.state, frame, eye_height_m);
+        if around == self.lights {
+            return false;
+        }
+        let shining = around.as_deref().unwrap_or_default();
+        let set = self.picture.set_lights(shining);
+        self.lights = set.map_err(|error| error.to_string()).and(around);
+        true
+    }
+
     /// Draws the picture if it shows something else than before.
     fn draw(&mut self, shot: &Shot) {
         if self.is_lost.load(Ordering::Relaxed) {
@@ -670,7 +788,7 @@ impl Viewer {
             return;
         }
         let drawn = (self.number_of_light(), *shot);
-        if self.drawn == Some(drawn) {
+        if !self.shine(&shot.frame) && self.drawn == Some(drawn) {
             return;
         }
         let is_new = self.picture.draw(shot);
@@ -701,35 +819,32 @@ impl Viewer {
         let Some(comparison) = beside.as_ref().and_then(|(beside, w)| beside.comparison(w)) else {
             return;
         };
-        let of = (
-            self.number,
-            shot,
-            compare.model.clone(),
-            compare.mode,
-            comparison.size,
-        );
+        let of = (shot, compare.mode, comparison.number);
         if self.compared.as_ref().is_none_or(|(shown, _)| *shown != of) {
-            let Some(image) = compared(comparison, compare.mode, &self.state.scene.output, shot)
-            else {
-                return;
-            };
+            let images = compared(comparison, compare.mode, &self.state.scene.output, shot);
             let options = egui::TextureOptions::LINEAR;
-            let texture = ui.ctx().load_texture("comparison", image, options);
-            self.compared = Some((of, texture));
+            let load = |image| ui.ctx().load_texture("comparison", image, options);
+            self.compared = Some((of, images.map(|image| image.map(load))));
         }
-        let Some((_, texture)) = &self.compared else {
+        let Some((_, [right, left])) = &self.compared else {
             return;
         };
-        let from = match compare.mode {
+        let line = match compare.mode {
             CompareMode::Split => compare.split.clamp(0.0, 1.0) as f32,
             _ => 0.0,
         };
-        let x = at.left() + from * at.width();
-        let part = Rect::from_min_max(pos2(x, at.top()), at.max);
-        let texels = Rect::from_min_max(pos2(from, 0.0), pos2(1.0, 1.0));
-        ui.painter()
-            .image(texture.id(), part, texels, Color32::WHITE);
-        if from > 0.0 {
+        let x = at.left() + line * at.width();
+        for (texture, [from, to]) in [(left, [0.0, line]), (right, [line, 1.0])] {
+            let Some(texture) = texture else {
+                continue;
+            };
+            let place = |part: f32| at.left() + part * at.width();
+            let part = Rect::from_x_y_ranges(place(from)..=place(to), at.y_range());
+            let texels = Rect::from_x_y_ranges(from..=to, 0.0..=1.0);
+            ui.painter()
+                .image(texture.id(), part, texels, Color32::WHITE);
+        }
+        if line > 0.0 {
             let stroke = egui::Stroke::new(1.0, Color32::from_white_alpha(170));
             ui.painter().vline(x, at.y_range(), stroke);
         }
@@ -744,44 +859,18 @@ impl Viewer {
     /// What is known of the error of the picture and of its difference from a model: a sentence each, one a line.
     pub fn judgement(&self) -> Option<String> {
         let (beside, wanted) = self.beside.as_ref().zip(self.wanted())?;
-        let sentence = |s: &truth::Statistics| {
-            format!(
-                "luminance {:.2} % rms (largest {:+.1} %), CIEDE2000 {:.2} rms",
-                s.rms_percent, s.worst_percent, s.rms_ciede2000
-            )
-        };
         let mut text = beside
             .check(&wanted)
             .map(|s| format!("error against the solver: {}", sentence(s)));
-        if let Some((model, _)) = wanted.model {
+        if let Some(sides) = wanted.sides {
             let line = match (beside.comparison(&wanted), beside.refusal(&wanted)) {
                 (Some(comparison), _) => {
-                    let found = comparison.statistics.as_ref().map(sentence);
+                    let paths = beside.paths(&wanted);
                     let mode = self.state.compare.as_ref().map(|compare| compare.mode);
-                    let legend = match (comparison.statistics, mode) {
-                        (Some(s), Some(CompareMode::Luminance)) => format!(
-                            "; red: the picture is brighter, blue: darker, to {} %",
-                            truth::end(s.rms_percent)
-                        ),
-                        (Some(s), Some(CompareMode::Colour)) => {
-                            format!(
-                                "; black: none, white: {} or more",
-                                truth::end(s.rms_ciede2000)
-                            )
-                        }
-                        _ => String::new(),
-                    };
-                    let mut line = format!(
-                        "difference of the sky from {model}: {}",
-                        found.unwrap_or_default()
-                    );
-                    if !comparison.ignored.is_empty() {
-                        line += &format!("; it ignores {}", comparison.ignored.join(", "));
-                    }
-                    line + &legend
+                    described(comparison, sides, mode, paths)
                 }
                 (None, Some(refusal)) => refusal.to_owned(),
-                (None, None) => format!("computing {model} …"),
+                (None, None) => format!("computing {} …", sides.right),
             };
             text = Some(text.map_or(line.clone(), |text| format!("{text}\n{line}")));
         }
@@ -796,6 +885,13 @@ impl Viewer {
             _ if self.terrain_error().is_some() => {
                 self.terrain_error().unwrap_or_default().to_owned()
             }
+            #[cfg(not(target_arch = "wasm32"))]
+            _ if self.state.photograph.is_some() => match self.photograph() {
+                Some(Err(sentence)) => sentence.to_owned(),
+                Some(Ok(_)) => return,
+                None => "reading …".to_owned(),
+            },
+            _ if self.light_error().is_some() => self.light_error().unwrap_or_default().to_owned(),
             (Some(error), _) => error.clone(),
             (None, Some(_)) => "solving …".to_owned(),
             (None, None) => match self.judgement().filter(|_| self.has_panel) {
@@ -819,54 +915,115 @@ impl eframe::App for Viewer {
     }
 }
 
-/// What a comparison on the screen shows: number of the light, shot, model, mode and size.
-type Compared = (u64, Shot, String, CompareMode, [u32; 2]);
+/// What a comparison on the screen shows: shot, mode and the number of the comparison.
+type Compared = (Shot, CompareMode, u64);
 
-/// Size of a compared picture: half that of the picture.
-fn compared_size(size: [u32; 2]) -> [u32; 2] {
-    size.map(|v| v.div_ceil(2))
+/// Size of compared pictures: half that of the picture, or few pixels where a model needs many paths for each.
+fn compared_size(size: [u32; 2], models: [Option<&str>; 2]) -> [u32; 2] {
+    /// Pixels across with Monte Carlo.
+    const TRACED_WIDTH: u32 = 48;
+    let half = size.map(|v| v.div_ceil(2));
+    match models.contains(&Some("monte-carlo")) && half[0] > TRACED_WIDTH {
+        true => [TRACED_WIDTH, (TRACED_WIDTH * half[1]).div_ceil(half[0])],
+        false => half,
+    }
 }
 
-/// The picture of a comparison.
+/// Statistics in a sentence.
+fn sentence(s: &truth::Statistics) -> String {
+    format!(
+        "luminance {:.2} % rms (largest {:+.1} %), CIEDE2000 {:.2} rms",
+        s.rms_percent, s.worst_percent, s.rms_ciede2000
+    )
+}
+
+/// A comparison in a sentence, with what its map means.
+fn described(
+    comparison: &Comparison,
+    sides: Sides<'_>,
+    mode: Option<CompareMode>,
+    paths: Option<u64>,
+) -> String {
+    let statistics = comparison.statistics.as_ref();
+    let mut line = match sides.left {
+        Some(left) => format!("difference of {left} from {}: ", sides.right),
+        None => format!("difference of the sky from {}: ", sides.right),
+    };
+    line += &statistics.map(sentence).unwrap_or_default();
+    if let (Some(paths), Some(noise)) = (paths, comparison.noise) {
+        line += &format!("; {paths} paths a direction, noise {:.1} %", 100.0 * noise);
+    }
+    if !comparison.ignored.is_empty() {
+        line += &format!("; ignored: {}", comparison.ignored.join(", "));
+    }
+    match (statistics, mode) {
+        (Some(s), Some(CompareMode::Luminance)) => {
+            let left = sides.left.unwrap_or("the picture");
+            let end = truth::end(s.rms_percent);
+            line += &format!("; red: {left} is brighter, blue: darker, to {end} %");
+        }
+        (Some(s), Some(CompareMode::Colour)) => {
+            let end = truth::end(s.rms_ciede2000);
+            line += &format!("; black: none, white: {end} or more");
+        }
+        _ => {}
+    }
+    line
+}
+
+/// The pictures of a comparison: the right side or the map, and the left side if that is a model.
 fn compared(
     comparison: &Comparison,
     mode: CompareMode,
     output: &OutputSpec,
     shot: Shot,
-) -> Option<egui::ColorImage> {
-    let [width, height] = comparison.size.map(|v| v as usize);
-    let pixels: Vec<Color32> = match mode {
+) -> [Option<egui::ColorImage>; 2] {
+    let size = comparison.size.map(|v| v as usize);
+    let shades = |end: Option<f64>, colour: fn(&truth::Difference, f64) -> Color32| {
+        let end = end?;
+        let differences = comparison.differences.iter();
+        let pixels = differences.map(|d| d.as_ref().map_or(Color32::BLACK, |d| colour(d, end)));
+        Some(egui::ColorImage::new(size, pixels.collect()))
+    };
+    let statistics = comparison.statistics;
+    match mode {
         CompareMode::Split => {
-            let mapper = tone_mapper(output, shot.exposure)?;
-            let row = 3 * width;
-            let mut bytes = vec![0; row * height];
-            let rows = comparison.rgb.as_flattened().chunks(row);
-            for (y, (linear, out)) in rows.zip(bytes.chunks_mut(row)).enumerate() {
-                mapper.row_to_u8(y as u32, linear, out);
-            }
-            let pixels = bytes.as_chunks::<3>().0.iter();
-            pixels
-                .map(|[r, g, b]| Color32::from_rgb(*r, *g, *b))
-                .collect()
+            let left = comparison.left.as_ref();
+            let right = shown(&comparison.right, size, output, shot);
+            [right, left.and_then(|rgb| shown(rgb, size, output, shot))]
         }
         CompareMode::Luminance => {
-            let end = truth::end(comparison.statistics?.rms_percent);
-            shades(comparison, |d| truth::percent_colour(d.percent, end))
+            let end = statistics.map(|s| truth::end(s.rms_percent));
+            [
+                shades(end, |d, end| truth::percent_colour(d.percent, end)),
+                None,
+            ]
         }
         CompareMode::Colour => {
-            let end = truth::end(comparison.statistics?.rms_ciede2000);
-            shades(comparison, |d| truth::ciede2000_colour(d.ciede2000, end))
+            let end = statistics.map(|s| truth::end(s.rms_ciede2000));
+            [
+                shades(end, |d, end| truth::ciede2000_colour(d.ciede2000, end)),
+                None,
+            ]
         }
-    };
-    Some(egui::ColorImage::new([width, height], pixels))
+    }
 }
 
-/// A colour for each difference; black where there is none.
-fn shades(comparison: &Comparison, of: impl Fn(&truth::Difference) -> Color32) -> Vec<Color32> {
-    let differences = comparison.differences.iter();
-    differences
-        .map(|d| d.as_ref().map_or(Color32::BLACK, &of))
-        .collect()
+/// Light as the picture shows it; `None` for settings out of range.
+fn shown(
+    rgb: &[[f32; 3]],
+    size: [usize; 2],
+    output: &OutputSpec,
+    shot: Shot,
+) -> Option<egui::ColorImage> {
+    let mapper = tone_mapper(output, shot.exposure)?;
+    let row = 3 * size[0];
+    let mut bytes = vec![0; row * size[1]];
+    let rows = rgb.as_flattened().chunks(row);
+    for (y, (linear, out)) in rows.zip(bytes.chunks_mut(row)).enumerate() {
+        mapper.row_to_u8(y as u32, linear, out);
+    }
+    Some(egui::ColorImage::from_rgb(size, &bytes))
 }
 
 /// The exposure of a picture, metered as the program `airlight` does.

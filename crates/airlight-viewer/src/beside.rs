@@ -1,15 +1,20 @@
-//! [`Beside`]: what is computed beside the picture, to judge it: a spectrum, the error of the picture, another model's picture.
+//! [`Beside`]: what is computed beside the picture, to judge it: a spectrum, the error of the picture, the pictures of models.
 
-use crate::compute::{Answer, Light, Output, Request, Spectrum, Task};
+use crate::compute::{Answer, Colours, Light, Output, Request, Spectrum, Task};
 use crate::platform::Worker;
 use crate::truth::{self, Difference, Statistics};
 use airlight::glam::DVec3;
 use airlight::models::registry;
+use airlight::monte_carlo::BUNDLE;
 use airlight::scene::Scene;
 use airlight_image::Frame;
 
 /// Pixels, across and up, at which the picture is checked against the solver.
 const CHECKED: [u32; 2] = [16, 12];
+/// Bundles of paths that a model with noise begins with, at most adds at a time, and ends with.
+const FIRST_BUNDLES: u64 = 2;
+const ADDED_BUNDLES: u64 = 4;
+const MOST_BUNDLES: u64 = 256;
 
 /// What is wanted for a light.
 #[derive(Clone, Debug)]
@@ -24,24 +29,48 @@ pub struct Wanted<'a> {
     pub frame: Frame,
     /// Direction of the spectrum.
     pub direction: Option<DVec3>,
-    /// Model to compare with, and the size of its picture.
-    pub model: Option<(&'a str, [u32; 2])>,
+    /// Models to compare.
+    pub sides: Option<Sides<'a>>,
 }
 
-/// A picture of a model for a light.
+/// The two sides of a comparison.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sides<'a> {
+    /// Model on the left; `None` is the picture.
+    pub left: Option<&'a str>,
+    /// Model on the right.
+    pub right: &'a str,
+    /// Width and height at which they are computed.
+    pub size: [u32; 2],
+}
+
+impl Sides<'_> {
+    fn models(&self) -> impl Iterator<Item = &str> {
+        self.left.into_iter().chain([self.right])
+    }
+}
+
+/// A comparison of two pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    of: Question,
+    /// What it is made of, from the left; the picture is none.
+    of: Vec<Drawing>,
+    /// Grows with each comparison.
+    pub number: u64,
     /// Width and height.
     pub size: [u32; 2],
-    /// Red, green and blue, cd/m^2.
-    pub rgb: Vec<[f32; 3]>,
-    /// Differences of the picture that is drawn.
+    /// Red, green and blue of the left, unless that is the picture, cd/m^2.
+    pub left: Option<Vec<[f32; 3]>>,
+    /// The same of the right.
+    pub right: Vec<[f32; 3]>,
+    /// Differences of the left from the right.
     pub differences: Vec<Option<Difference>>,
     /// Their statistics.
     pub statistics: Option<Statistics>,
-    /// Inputs that the model ignores.
+    /// Inputs that a model ignores.
     pub ignored: Vec<String>,
+    /// Larger noise of the models, relative; `None` without.
+    pub noise: Option<f64>,
 }
 
 /// Computes what is wanted, one after another.
@@ -52,6 +81,8 @@ pub struct Beside {
     asked: Option<Question>,
     spectrum: Option<(Question, Spectrum)>,
     check: Option<(Question, Statistics)>,
+    /// The last pictures of models, the newest last.
+    drawings: Vec<(Drawing, Colours)>,
     comparison: Option<Comparison>,
     /// A question without an answer, and why.
     refused: Option<(Question, String)>,
@@ -62,7 +93,45 @@ pub struct Beside {
 enum Question {
     Spectrum(u64, DVec3),
     Check(u64, Frame),
-    Compare(u64, Frame, [u32; 2], String),
+    Draw(Drawing),
+}
+
+/// A picture by a model for the light with a number.
+#[derive(Clone, Debug, PartialEq)]
+struct Drawing {
+    number: u64,
+    frame: Frame,
+    size: [u32; 2],
+    model: String,
+    /// Bundles of paths, if the model has noise.
+    bundles: u64,
+}
+
+impl Drawing {
+    fn of(wanted: &Wanted<'_>, size: [u32; 2], model: &str) -> Self {
+        Self {
+            number: wanted.number,
+            frame: wanted.frame,
+            size,
+            model: model.to_owned(),
+            bundles: FIRST_BUNDLES,
+        }
+    }
+
+    /// Whether it is the same picture with more or less noise.
+    fn is_same(&self, other: &Self) -> bool {
+        let bundles = self.bundles;
+        *self
+            == Self {
+                bundles,
+                ..other.clone()
+            }
+    }
+
+    /// Whether there is less noise than at first.
+    fn is_refined(&self) -> bool {
+        self.bundles > FIRST_BUNDLES
+    }
 }
 
 impl Beside {
@@ -74,6 +143,7 @@ impl Beside {
             asked: None,
             spectrum: None,
             check: None,
+            drawings: Vec::new(),
             comparison: None,
             refused: None,
         }
@@ -84,8 +154,10 @@ impl Beside {
         while let Some(answer) = self.worker.receive() {
             self.take(answer, wanted);
         }
+        self.compare(wanted);
+        let next = self.next(wanted).or_else(|| self.refinement(wanted));
         if self.asked.is_none()
-            && let Some(question) = self.next(wanted)
+            && let Some(question) = next
         {
             self.number += 1;
             let request = Request {
@@ -99,9 +171,14 @@ impl Beside {
         }
     }
 
-    /// Whether all that is wanted is there, or refused.
+    /// Whether all that is wanted is there, or refused, be it with noise.
     pub fn is_current(&self, wanted: &Wanted<'_>) -> bool {
-        self.asked.is_none() && self.next(wanted).is_none()
+        let is_refining = match &self.asked {
+            Some(Question::Draw(drawing)) => drawing.is_refined(),
+            Some(_) => false,
+            None => true,
+        };
+        is_refining && self.next(wanted).is_none()
     }
 
     /// Waits for an answer.
@@ -111,6 +188,7 @@ impl Beside {
             && let Some(answer) = self.worker.wait()
         {
             self.take(answer, wanted);
+            self.compare(wanted);
         }
     }
 
@@ -129,15 +207,35 @@ impl Beside {
 
     /// The wanted comparison.
     pub fn comparison(&self, wanted: &Wanted<'_>) -> Option<&Comparison> {
-        let question = compare(wanted)?;
-        self.comparison.as_ref().filter(|c| c.of == question)
+        let sides = wanted.sides?;
+        self.comparison.as_ref().filter(|comparison| {
+            let of = comparison.of.iter();
+            let models = sides.models();
+            comparison.of.len() == sides.models().count()
+                && of
+                    .zip(models)
+                    .all(|(of, model)| of.is_same(&Drawing::of(wanted, sides.size, model)))
+        })
     }
 
     /// Why there is no comparison, as a sentence.
     pub fn refusal(&self, wanted: &Wanted<'_>) -> Option<&str> {
-        let question = compare(wanted)?;
+        let sides = wanted.sides?;
         let (of, sentence) = self.refused.as_ref()?;
-        (*of == question).then_some(sentence.as_str())
+        let is_refused = |model| *of == Question::Draw(Drawing::of(wanted, sides.size, model));
+        sides.models().any(is_refused).then_some(sentence.as_str())
+    }
+
+    /// Number of paths for each direction of the wanted comparison, if a model has noise.
+    pub fn paths(&self, wanted: &Wanted<'_>) -> Option<u64> {
+        let comparison = self.comparison(wanted)?;
+        let bundles = comparison.of.iter().map(|drawing| drawing.bundles).max()?;
+        comparison.noise.map(|_| bundles * BUNDLE as u64)
+    }
+
+    /// The picture of a model, with however much noise.
+    fn drawing(&self, drawing: &Drawing) -> Option<&(Drawing, Colours)> {
+        self.drawings.iter().find(|(of, _)| of.is_same(drawing))
     }
 
     /// The next question: what is shown first, the check last.
@@ -145,67 +243,126 @@ impl Beside {
         let spectrum = wanted
             .direction
             .map(|d| Question::Spectrum(wanted.number, d));
-        let check = Some(Question::Check(wanted.number, wanted.frame));
+        let check = Question::Check(wanted.number, wanted.frame);
+        let sides = wanted.sides.as_ref();
+        let drawings = sides.into_iter().flat_map(|sides| {
+            let models = sides.models();
+            models.map(|model| Question::Draw(Drawing::of(wanted, sides.size, model)))
+        });
         let is_open = |question: &Question| {
-            let answered = match question {
-                Question::Spectrum(..) => self.spectrum.as_ref().map(|(of, _)| of),
-                Question::Check(..) => self.check.as_ref().map(|(of, _)| of),
-                Question::Compare(..) => self.comparison.as_ref().map(|c| &c.of),
+            let is_answered = match question {
+                Question::Spectrum(..) => {
+                    self.spectrum.as_ref().is_some_and(|(of, _)| of == question)
+                }
+                Question::Check(..) => self.check.as_ref().is_some_and(|(of, _)| of == question),
+                Question::Draw(drawing) => self.drawing(drawing).is_some(),
             };
-            answered != Some(question) && self.refused.as_ref().map(|(of, _)| of) != Some(question)
+            !is_answered && self.refused.as_ref().map(|(of, _)| of) != Some(question)
         };
-        [spectrum, compare(wanted), check]
+        spectrum
             .into_iter()
-            .flatten()
+            .chain(drawings)
+            .chain([check])
             .find(is_open)
+    }
+
+    /// A picture with noise again, with more paths.
+    fn refinement(&self, wanted: &Wanted<'_>) -> Option<Question> {
+        let sides = wanted.sides?;
+        let drawings = sides.models().filter_map(|model| {
+            let (drawing, colours) = self.drawing(&Drawing::of(wanted, sides.size, model))?;
+            let is_noisy = colours.noise.is_some() && drawing.bundles < MOST_BUNDLES;
+            is_noisy.then(|| Drawing {
+                bundles: drawing.bundles + drawing.bundles.min(ADDED_BUNDLES),
+                ..drawing.clone()
+            })
+        });
+        let least = drawings.min_by_key(|drawing| drawing.bundles);
+        least.map(Question::Draw)
     }
 
     fn take(&mut self, answer: Answer, wanted: &Wanted<'_>) {
         let Some(question) = self.asked.take() else {
             return;
         };
-        let number = match question {
-            Question::Spectrum(number, _) | Question::Check(number, _) => number,
-            Question::Compare(number, ..) => number,
+        let number = match &question {
+            Question::Spectrum(number, _) | Question::Check(number, _) => *number,
+            Question::Draw(drawing) => drawing.number,
         };
         if number != wanted.number {
             return;
         }
-        match (answer.result, &question) {
-            (Ok(Output::Spectrum(spectrum)), _) => self.spectrum = Some((question, spectrum)),
-            (Ok(Output::Colours(colours)), Question::Check(_, frame)) => {
-                let directions = truth::directions(frame, CHECKED);
-                let differences = truth::differences(wanted.light, &directions, &colours);
+        match (answer.result, question) {
+            (Ok(Output::Spectrum(spectrum)), question) => {
+                self.spectrum = Some((question, spectrum));
+            }
+            (Ok(Output::Colours(colours)), Question::Check(number, frame)) => {
+                let directions = truth::directions(&frame, CHECKED);
+                let drawn = truth::drawn(wanted.light, &directions);
+                let differences = truth::differences(&drawn, &colours.rgb);
                 let found = truth::statistics(wanted.light, &directions, &differences);
+                let question = Question::Check(number, frame);
                 self.check = Some((question, found.unwrap_or_default()));
             }
-            (Ok(Output::Colours(colours)), Question::Compare(_, frame, size, _)) => {
-                let size = *size;
-                let directions = truth::directions(frame, size);
-                let differences = truth::differences(wanted.light, &directions, &colours);
-                self.comparison = Some(Comparison {
-                    size,
-                    statistics: truth::sky_statistics(wanted.light, &directions, &differences),
-                    differences,
-                    rgb: colours.rgb,
-                    ignored: colours.ignored,
-                    of: question,
-                });
+            (Ok(Output::Colours(colours)), Question::Draw(drawing)) => {
+                /// Both sides.
+                const KEPT: usize = 2;
+                self.drawings.retain(|(of, _)| !of.is_same(&drawing));
+                self.drawings.push((drawing, colours));
+                let more = self.drawings.len().saturating_sub(KEPT);
+                self.drawings.drain(..more);
             }
-            (Err(sentence), _) => self.refused = Some((question, sentence)),
+            (Err(sentence), question) => self.refused = Some((question, sentence)),
             (Ok(_), _) => {}
         }
     }
-}
 
-fn compare(wanted: &Wanted<'_>) -> Option<Question> {
-    let (model, size) = wanted.model?;
-    Some(Question::Compare(
-        wanted.number,
-        wanted.frame,
-        size,
-        model.to_owned(),
-    ))
+    /// Compares the wanted pictures, once they are there and unless they have been.
+    fn compare(&mut self, wanted: &Wanted<'_>) {
+        let Some(sides) = wanted.sides else {
+            return;
+        };
+        let drawings = sides.models().map(|model| {
+            self.drawing(&Drawing::of(wanted, sides.size, model))
+                .cloned()
+        });
+        let Some(drawings) = drawings.collect::<Option<Vec<_>>>() else {
+            return;
+        };
+        let (of, colours): (Vec<Drawing>, Vec<Colours>) = drawings.into_iter().unzip();
+        if self
+            .comparison
+            .as_ref()
+            .is_some_and(|before| before.of == of)
+        {
+            return;
+        }
+        let ignored = colours.iter().flat_map(|colours| colours.ignored.clone());
+        let noise = colours.iter().filter_map(|colours| colours.noise);
+        let (ignored, noise) = (ignored.collect(), noise.reduce(f64::max));
+        let mut rgb = colours.into_iter().map(|colours| colours.rgb);
+        let left = sides.left.and_then(|_| rgb.next());
+        let right = rgb.next().unwrap_or_default();
+        let directions = truth::directions(&wanted.frame, sides.size);
+        let differences = match &left {
+            Some(left) => truth::differences(left, &right),
+            None => truth::differences(&truth::drawn(wanted.light, &directions), &right),
+        };
+        self.comparison = Some(Comparison {
+            of,
+            number: self
+                .comparison
+                .as_ref()
+                .map_or(0, |before| before.number + 1),
+            size: sides.size,
+            statistics: truth::sky_statistics(wanted.light, &directions, &differences),
+            left,
+            right,
+            differences,
+            ignored,
+            noise,
+        });
+    }
 }
 
 fn task(question: &Question) -> Task {
@@ -214,10 +371,12 @@ fn task(question: &Question) -> Task {
         Question::Check(_, frame) => Task::Colours {
             model: registry::DEFAULT.to_owned(),
             directions: truth::directions(frame, CHECKED),
+            bundles: FIRST_BUNDLES,
         },
-        Question::Compare(_, frame, size, model) => Task::Colours {
-            model: model.clone(),
-            directions: truth::directions(frame, *size),
+        Question::Draw(drawing) => Task::Colours {
+            model: drawing.model.clone(),
+            directions: truth::directions(&drawing.frame, drawing.size),
+            bundles: drawing.bundles,
         },
     }
 }

@@ -1,13 +1,53 @@
 //! [`command_line`]: the program `airlight` for the picture.
 
+use crate::state::State;
 use airlight::Named;
 use airlight::scene::{Exposure, FogSpec, Scene};
 
-/// The command that draws a scene into `sky.png`, quoted for a shell; `None` for a scene with parts that no option of it sets here, which
-/// is drawn from a file.
-pub fn command_line(scene: &Scene) -> Option<String> {
+/// The command that draws the picture of a state, quoted for a shell. A state with parts that no option sets is drawn from
+/// `scene.toml`, a file to be saved first.
+pub fn command_line(state: &State) -> String {
+    if state.photograph.is_some() {
+        return "airlight fog --scene scene.toml -o fogged.png".to_owned();
+    }
+    let is_sky = state.terrain.is_none() && state.scene.lights.is_empty();
+    if is_sky {
+        let line = with_options(&state.scene, "sky");
+        return line.map_or_else(
+            || "airlight sky --scene scene.toml -o sky.png".to_owned(),
+            |mut line| {
+                line.add("-o", "sky.png".to_owned());
+                line.words.join(" ")
+            },
+        );
+    }
+    // The ground of a terrain whose middle the eye stands on.
+    let terrain = state.terrain.as_ref();
+    let terrain = terrain.filter(|terrain| [terrain.east_m, terrain.south_m] == [0.0; 2]);
+    let line = with_options(&state.scene, "view").zip(terrain);
+    let mut line = match line {
+        Some((mut line, terrain)) => {
+            let file = terrain.file.clone();
+            line.add("--terrain", file.unwrap_or_else(|| "mountains".to_owned()));
+            let spacing_m = terrain.spacing_m.filter(|_| terrain.file.is_some());
+            line.number("--terrain-spacing-m", spacing_m);
+            line
+        }
+        None => Line {
+            words: ["airlight", "view", "scene.toml"]
+                .map(str::to_owned)
+                .to_vec(),
+        },
+    };
+    line.add("--screenshot", "view.png".to_owned());
+    line.words.push("--no-panel".to_owned());
+    line.words.join(" ")
+}
+
+/// The options of a scene; `None` for a scene with parts that no option sets here.
+fn with_options(scene: &Scene, command: &str) -> Option<Line> {
     let mut line = Line {
-        words: vec!["airlight".to_owned(), "sky".to_owned()],
+        words: vec!["airlight".to_owned(), command.to_owned()],
     };
     let mut rest = scene.clone();
     let sun = std::mem::take(&mut rest.sun);
@@ -65,6 +105,7 @@ pub fn command_line(scene: &Scene) -> Option<String> {
     match output.exposure.take() {
         Some(Exposure::Ev100(ev100)) => line.number("--exposure", Some(ev100)),
         Some(Exposure::Metered(mode)) => line.add("--exposure", mode.name().to_owned()),
+        Some(Exposure::Camera(camera)) => line.add("--exposure", camera.to_string()),
         None => {}
     }
     line.number("--brighten", output.brighten.take());
@@ -76,8 +117,7 @@ pub fn command_line(scene: &Scene) -> Option<String> {
     line.number("--saturation", output.saturation.take());
     line.number("--white-balance", output.white_balance_k.take());
     output.file = None;
-    line.add("-o", "sky.png".to_owned());
-    (rest == Scene::default()).then(|| line.words.join(" "))
+    (rest == Scene::default()).then_some(line)
 }
 
 /// The words of a command.
@@ -113,23 +153,60 @@ impl Line {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::state::Terrain;
+
+    fn command(scene: &str) -> String {
+        // Without what the viewer fills in.
+        command_line(&State {
+            scene: Scene::from_toml(scene).unwrap(),
+            terrain: None,
+            compare: None,
+            photograph: None,
+        })
+    }
 
     #[test]
     fn scenes_are_commands() {
-        let scene = Scene::from_toml(
-            "sun.elevation_deg = -4
+        let scene = "sun.elevation_deg = -4
             observer.altitude_m = 1500
             air.aerosol = \"urban:0.7,desert:0.3\"
             camera.projection = \"perspective\"
-            output.exposure = 9.5",
-        );
+            output.exposure = 9.5";
         assert_eq!(
-            command_line(&scene.unwrap()).unwrap(),
+            command(scene),
             "airlight sky --sun-elevation=-4 --altitude-m=1500 --aerosol=urban:0.7,desert:0.3 --projection=perspective --exposure=9.5 -o sky.png"
         );
-        let scene = Scene::from_toml("sun.elevation_deg = 3\nsun.refraction = false");
-        assert_eq!(command_line(&scene.unwrap()), None);
-        let scene = Scene::from_toml("sun.elevation_deg = 3\nnight.stars = true");
-        assert_eq!(command_line(&scene.unwrap()), None);
+        assert_eq!(
+            command(
+                "sun.elevation_deg = 30\noutput = { exposure = \"f/8 1/125 s ISO 100\", white_balance_k = 5000 }"
+            ),
+            "airlight sky --sun-elevation=30 --exposure='f/8 1/125 s ISO 100' --white-balance=5000 -o sky.png"
+        );
+        let from_file = "airlight sky --scene scene.toml -o sky.png";
+        for scene in ["sun.refraction = false", "night.stars = true"] {
+            let scene = format!("sun.elevation_deg = 3\n{scene}");
+            assert_eq!(command(&scene), from_file);
+        }
+    }
+
+    #[test]
+    fn what_the_sky_does_not_draw_is_drawn_by_the_viewer() {
+        let mut state = State {
+            scene: Scene::from_toml("sun.elevation_deg = 8").unwrap(),
+            terrain: Some(Terrain::default()),
+            ..Default::default()
+        };
+        assert_eq!(
+            command_line(&state),
+            "airlight view --sun-elevation=8 --terrain=mountains --screenshot=view.png --no-panel"
+        );
+        state.terrain = Some(Terrain {
+            south_m: 300.0,
+            ..Default::default()
+        });
+        let from_file = "airlight view scene.toml --screenshot=view.png --no-panel";
+        assert_eq!(command_line(&state), from_file);
+        let lights = "[[lights]]\nposition_m = [0, 3, -9]\nintensity = [1, 1, 1]";
+        assert_eq!(command(lights), from_file);
     }
 }

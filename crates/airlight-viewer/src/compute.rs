@@ -8,12 +8,15 @@ use airlight::fog::RgbLayer;
 use airlight::glam::DVec3;
 use airlight::models::registry;
 use airlight::scene::{
-    AirSpec, Channels, PreparedModel, RadianceView, ResolvedScene, Scene, SceneError, SolverSpec,
-    SunAngles,
+    AirSpec, Channels, PreparedModel, RadianceSampler, RadianceView, ResolvedScene, Scene,
+    SceneError, SolverSpec, SunAngles,
 };
 use airlight::sky::SunCoverage;
 use airlight::spectrum::RgbSpace;
 use airlight_gpu::{Fog, FrameTables, SkyRendererError, SkySolver};
+use airlight_image::{ImageError, Size};
+use airlight_render::canvas::{Canvas, Pass};
+use airlight_render::channels::PixelChannels;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -49,6 +52,8 @@ pub enum Task {
         model: String,
         /// Directions, unit vectors; those without length are black.
         directions: Vec<[f32; 3]>,
+        /// Bundles of paths for each direction by a model with noise, together with those of requests before for the same directions.
+        bundles: u64,
     },
 }
 
@@ -90,6 +95,8 @@ pub struct Colours {
     pub rgb: Vec<[f32; 3]>,
     /// Inputs of the scene that the model ignores, and for which it has its defaults.
     pub ignored: Vec<String>,
+    /// Standard error of the green of a direction relative to it, root mean square; `None` for models without noise.
+    pub noise: Option<f64>,
 }
 
 /// The light of a scene.
@@ -124,6 +131,8 @@ pub struct Facts {
     pub sun_lx: f64,
     /// Illuminance of a horizontal surface by the sky, lx.
     pub sky_lx: f64,
+    /// Whether lights shine in the fog: in one layer that thins exponentially with height.
+    pub holds_lights: bool,
 }
 
 /// Computes the answer to a request.
@@ -137,6 +146,17 @@ pub struct Computer {
     solved: Option<Solved>,
     /// Prepared models with what they are prepared for; the last is the newest.
     prepared: Vec<(Prepared, Arc<dyn PreparedModel>)>,
+    traced: Option<Traced>,
+}
+
+/// Colours of a model with noise, to which paths are added.
+struct Traced {
+    scene: Scene,
+    model: String,
+    directions: Vec<[f32; 3]>,
+    /// One direction a row.
+    canvas: Canvas,
+    bundles: u64,
 }
 
 /// What a model is prepared for: the scene, reduced to the inputs that it honours, and the name of the model.
@@ -175,6 +195,8 @@ enum Refusal {
     Scene(#[from] SceneError),
     #[error(transparent)]
     Renderer(#[from] SkyRendererError),
+    #[error(transparent)]
+    Image(#[from] ImageError),
 }
 
 impl Computer {
@@ -186,8 +208,12 @@ impl Computer {
                 .light(scene)
                 .map(|light| Output::Light(Box::new(light))),
             Task::Spectrum(direction) => self.spectrum(scene, *direction).map(Output::Spectrum),
-            Task::Colours { model, directions } => {
-                let colours = self.colours(scene, model, directions);
+            Task::Colours {
+                model,
+                directions,
+                bundles,
+            } => {
+                let colours = self.colours(scene, model, directions, *bundles);
                 colours.map(Output::Colours)
             }
         };
@@ -214,15 +240,43 @@ impl Computer {
         scene: &Scene,
         model: &str,
         directions: &[[f32; 3]],
+        bundles: u64,
     ) -> Result<Colours, Refusal> {
         let (view, ignored) = self.view(scene, model, Channels::Rgb(SPACE))?;
-        let directions: Vec<DVec3> = directions
-            .iter()
-            .map(|d| Vec3::from_array(*d).as_dvec3().normalize_or_zero())
-            .collect();
+        if let Some(sampler) = view.sampler() {
+            let traced = self.traced(scene, model, directions)?;
+            let (rgb, noise) = traced.add(sampler, bundles)?;
+            return Ok(Colours {
+                rgb,
+                ignored,
+                noise: Some(noise),
+            });
+        }
         let mut rgb = vec![[0.0; 3]; directions.len()];
-        view.radiance(&directions, rgb.as_flattened_mut());
-        Ok(Colours { rgb, ignored })
+        view.radiance(&unit_vectors(directions), rgb.as_flattened_mut());
+        Ok(Colours {
+            rgb,
+            ignored,
+            noise: None,
+        })
+    }
+
+    /// The paths of a model with noise so far; none for another scene, model or directions than those before.
+    fn traced(
+        &mut self,
+        scene: &Scene,
+        model: &str,
+        directions: &[[f32; 3]],
+    ) -> Result<&mut Traced, Refusal> {
+        let is_same = |traced: &Traced| {
+            traced.scene == *scene && traced.model == model && traced.directions == directions
+        };
+        let before = self.traced.take().filter(is_same);
+        let traced = match before {
+            Some(traced) => traced,
+            None => Traced::new(scene, model, directions)?,
+        };
+        Ok(self.traced.insert(traced))
     }
 
     /// The view of a model without the inputs that it ignores, which are named.
@@ -305,6 +359,52 @@ impl Computer {
     }
 }
 
+impl Traced {
+    fn new(scene: &Scene, model: &str, directions: &[[f32; 3]]) -> Result<Self, ImageError> {
+        let size = Size::new(1, directions.len() as u32)?;
+        Ok(Self {
+            scene: scene.clone(),
+            model: model.to_owned(),
+            directions: directions.to_vec(),
+            canvas: Canvas::new(size, &PixelChannels::rgb(SPACE), false),
+            bundles: 0,
+        })
+    }
+
+    /// Adds bundles of paths up to a number, and returns the colours and their noise.
+    fn add(
+        &mut self,
+        sampler: &dyn RadianceSampler,
+        bundles: u64,
+    ) -> Result<(Vec<[f32; 3]>, f64), ImageError> {
+        let directions = unit_vectors(&self.directions);
+        let pass = Pass {
+            bundles: self.bundles..bundles.max(self.bundles),
+            goal: bundles,
+        };
+        let sample = |_, row: u32, bundle, found: &mut [f64], _: Option<&mut [f64; 3]>| {
+            let direction = directions[row as usize];
+            if direction != DVec3::ZERO {
+                sampler.add_bundle(direction, bundle, found);
+            }
+        };
+        self.canvas.add_with(&pass, Control::default(), sample)?;
+        self.bundles = pass.bundles.end;
+        let (squares, count) = self.canvas.relative_errors();
+        let noise = (squares / count.max(1) as f64).sqrt();
+        let rgb = self.canvas.means().as_chunks().0.to_vec();
+        Ok((rgb, noise))
+    }
+}
+
+/// Directions in double precision; those without length stay zero.
+fn unit_vectors(directions: &[[f32; 3]]) -> Vec<DVec3> {
+    let directions = directions.iter();
+    directions
+        .map(|d| Vec3::from_array(*d).as_dvec3().normalize_or_zero())
+        .collect()
+}
+
 /// The first layer of a scene's fog.
 fn fog(scene: &ResolvedScene) -> Result<Option<Fog>, SceneError> {
     let Some(layer) = scene.fog.as_ref().and_then(|fog| fog.layers.first()) else {
@@ -349,5 +449,9 @@ fn facts(scene: &ResolvedScene, sun: &SunAngles, tables: &FrameTables) -> Facts 
         is_earth: air.is_earth(),
         sun_lx: luminance(light.sun_illuminance_lx) * f64::from(light.sun.y.max(0.0)),
         sky_lx: luminance(light.sky_illuminance_lx(Vec3::Y)),
+        holds_lights: tables
+            .fog
+            .as_ref()
+            .is_some_and(|fog| fog.around_lights.is_some()),
     }
 }

@@ -1,11 +1,9 @@
 //! Scenes to begin with.
 
 use crate::state::State;
-use airlight::scene::Scene;
-use toml::{Table, Value};
 
 /// Names of the scenes, and their TOML, with their terrain.
-pub const EXAMPLES: [(&str, &str); 8] = [
+pub const EXAMPLES: [(&str, &str); 9] = [
     (
         "noon in the mountains",
         "sun = { elevation_deg = 55, azimuth_deg = 180 }
@@ -30,6 +28,7 @@ pub const EXAMPLES: [(&str, &str); 8] = [
         camera = { azimuth_deg = 70, elevation_deg = -4 }
         terrain = { east_m = 2000, south_m = 3000 }",
     ),
+    ("a street of lights in fog", STREET),
     (
         "dusk",
         "sun = { elevation_deg = -4, azimuth_deg = 285 }
@@ -67,15 +66,34 @@ pub const EXAMPLES: [(&str, &str); 8] = [
     ),
 ];
 
+/// A street that leads to the north, by dusk, in the orange light of sodium.
+const STREET: &str = "sun = { elevation_deg = -5, azimuth_deg = 290 }
+        observer.altitude_m = 2
+        air.atmosphere = \"average\"
+        fog = { visibility_m = 150, scale_height_m = 20 }
+        camera = { azimuth_deg = 0, elevation_deg = 6, fov_deg = 80 }
+        lights = [
+            { position_m = [-5, 5, -8], intensity = [900, 420, 60] },
+            { position_m = [5, 5, -8], intensity = [900, 420, 60] },
+            { position_m = [-5, 5, -22], intensity = [900, 420, 60] },
+            { position_m = [5, 5, -22], intensity = [900, 420, 60] },
+            { position_m = [-5, 5, -36], intensity = [900, 420, 60] },
+            { position_m = [5, 5, -36], intensity = [900, 420, 60] },
+            { position_m = [-5, 5, -50], intensity = [900, 420, 60] },
+            { position_m = [5, 5, -50], intensity = [900, 420, 60] },
+            { position_m = [-5, 5, -64], intensity = [900, 420, 60] },
+            { position_m = [5, 5, -64], intensity = [900, 420, 60] },
+            { position_m = [-5, 5, -78], intensity = [900, 420, 60] },
+            { position_m = [5, 5, -78], intensity = [900, 420, 60] },
+            { position_m = [-5, 5, -92], intensity = [900, 420, 60] },
+            { position_m = [5, 5, -92], intensity = [900, 420, 60] },
+            { position_m = [-5, 5, -106], intensity = [900, 420, 60] },
+            { position_m = [5, 5, -106], intensity = [900, 420, 60] },
+        ]";
+
 /// The state of an example.
 pub fn state(toml: &str) -> Option<State> {
-    let mut table: Table = toml.parse().ok()?;
-    let terrain = table.remove("terrain").map(Value::try_into).transpose();
-    let scene = Scene::from_toml(&table.to_string()).ok()?;
-    Some(State {
-        terrain: terrain.ok()?,
-        ..State::of_scene(scene)
-    })
+    State::from_toml(toml).ok()
 }
 
 #[cfg(test)]

@@ -6,8 +6,8 @@
 //! [`compute()`] is the work that takes time, from plain data to plain data; the module `platform` runs it beside the window. The solver,
 //! the drawing and the colours are those of the library; the viewer adds no physics.
 //!
-//! Modules, each importing only from those above it: [`state`], `terrain`, `address`, `examples`, `options`, `command`, [`compute`](mod@compute),
-//! `message`, `platform`, `picture`, `truth`, `style`, `widgets`, `play`, `view`, `panel`, `reading`, `beside`, `app`, `headless`, `window`, `page`.
+//! Modules, each importing only from those above it: [`state`], `terrain`, `lights`, `photograph`, `address`, `examples`, `options`, `command`,
+//! [`compute`](mod@compute), `message`, `platform`, `picture`, `truth`, `style`, `widgets`, `play`, `view`, `panel`, `reading`, `beside`, `app`, `headless`, `window`, `page`.
 
 mod address;
 mod app;
@@ -17,12 +17,15 @@ pub mod compute;
 mod examples;
 #[cfg(not(target_arch = "wasm32"))]
 mod headless;
+mod lights;
 #[cfg(any(test, target_arch = "wasm32"))]
 mod message;
 mod options;
 #[cfg(target_arch = "wasm32")]
 mod page;
 mod panel;
+#[cfg(not(target_arch = "wasm32"))]
+mod photograph;
 mod picture;
 mod platform;
 mod play;
@@ -44,6 +47,8 @@ pub use headless::screenshot;
 pub use options::Options;
 #[cfg(target_arch = "wasm32")]
 pub use page::run_in_page;
+#[cfg(not(target_arch = "wasm32"))]
+pub use photograph::Developed;
 pub use state::State;
 #[cfg(not(target_arch = "wasm32"))]
 pub use window::run;

@@ -101,10 +101,11 @@ macro_rules! structs {
 structs! {
     Answer { number, result }
     Spectrum { wavelengths_nm, radiance, xyz }
-    Colours { rgb, ignored }
+    Colours { rgb, ignored, noise }
     Light { tables, facts }
     Facts {
-        sun_elevation_deg, sun_azimuth_deg, altitude_m, horizon_deg, haze_depth_550, ozone_du, ground_albedo, is_earth, sun_lx, sky_lx
+        sun_elevation_deg, sun_azimuth_deg, altitude_m, horizon_deg, haze_depth_550, ozone_du, ground_albedo, is_earth, sun_lx, sky_lx,
+        holds_lights
     }
     FrameTables { sky, disc, disc_one_minus_cos, fog, lighting }
     SkyTables {
@@ -131,10 +132,15 @@ impl Bytes for Task {
                 1u8.put(bytes);
                 direction.put(bytes);
             }
-            Self::Colours { model, directions } => {
+            Self::Colours {
+                model,
+                directions,
+                bundles,
+            } => {
                 2u8.put(bytes);
                 model.put(bytes);
                 directions.put(bytes);
+                bundles.put(bytes);
             }
         }
     }
@@ -145,6 +151,7 @@ impl Bytes for Task {
             2 => Some(Self::Colours {
                 model: Bytes::take(bytes)?,
                 directions: Bytes::take(bytes)?,
+                bundles: Bytes::take(bytes)?,
             }),
             _ => None,
         }
@@ -317,11 +324,18 @@ mod tests {
             visibility_m: Some(2000.0),
             ..Default::default()
         });
-        let colours = Task::Colours {
-            model: "preetham".to_owned(),
+        let colours = |model: &str| Task::Colours {
+            model: model.to_owned(),
             directions: vec![[0.0, 1.0, 0.0], [0.0; 3]],
+            bundles: 2,
         };
-        for (number, task) in (7..).zip([Task::Light, Task::Spectrum([0.0, 1.0, 0.0]), colours]) {
+        let tasks = [
+            Task::Light,
+            Task::Spectrum([0.0, 1.0, 0.0]),
+            colours("preetham"),
+            colours("monte-carlo"),
+        ];
+        for (number, task) in (7..).zip(tasks) {
             let request = Request {
                 number,
                 scene: scene.clone(),

@@ -8,19 +8,40 @@ use crate::view::{FISHEYE_FOV_DEG, FOV_DEG, SUN_AZIMUTH_DEG};
 use crate::widgets::{Number, choice, title};
 use airlight::Named;
 use airlight::atmosphere::{AerosolType, Preset};
+use airlight::axes;
 use airlight::models::registry;
-use airlight::scene::{CameraSpec, Exposure, FogSpec, Projection, ToneKind};
+use airlight::scene::{
+    CameraExposure, CameraSpec, Exposure, FogSpec, LightKind, LightSpec, MeteringMode, Projection,
+    Scene, ToneKind,
+};
 use airlight::sun::Moment;
+use airlight_gpu::MOST_LIGHTS;
+use airlight_render::overlay::{DepthFileKind, OverlaySpec};
 use eframe::egui::{self, RichText, Ui};
 
 /// Shows the controls; they change the state.
-pub fn show(ui: &mut Ui, state: &mut State, play: &mut Play, facts: &Facts, ev100: f64) {
+pub fn show(
+    ui: &mut Ui,
+    state: &mut State,
+    (play, coarseness): (&mut Play, &mut u32),
+    facts: &Facts,
+    ev100: f64,
+) {
+    if let Some(photograph) = &mut state.photograph {
+        self::photograph(ui, photograph, &mut state.scene);
+        fog(ui, state);
+        return;
+    }
     sun(ui, state, play, facts);
     eye(ui, state, facts);
     air(ui, state, facts);
     fog(ui, state);
+    lights(ui, state, facts);
     ground(ui, state);
     display(ui, state, ev100);
+    let named = [(1, "full"), (2, "half"), (4, "a quarter")];
+    let named = named.map(|(pixels, text)| (pixels, text.to_owned()));
+    choice(ui, "Resolution", coarseness, &named);
     compare(ui, state);
 }
 
@@ -299,7 +320,12 @@ fn fog(ui: &mut Ui, state: &mut State) {
         });
     }
     if let Some(fog) = &mut state.scene.fog {
-        Number::new("Visibility", " m", 20.0..=2e4)
+        let nearest_m = if state.photograph.is_some() {
+            1.0
+        } else {
+            20.0
+        };
+        Number::new("Visibility", " m", nearest_m..=2e4)
             .logarithmic()
             .decimals(0)
             .help("At the ground, where the fog is densest.")
@@ -310,6 +336,193 @@ fn fog(ui: &mut Ui, state: &mut State) {
             .decimals(0)
             .help("Height over which the fog thins by a factor e.")
             .show_optional(ui, &mut fog.scale_height_m, 50.0);
+    }
+}
+
+/// Light of the fog over a photograph.
+#[derive(Clone, Copy, PartialEq)]
+enum PhotographLight {
+    Ambient,
+    Sun,
+    Sky,
+}
+
+/// Depth, camera and light of a photograph.
+fn photograph(ui: &mut Ui, photograph: &mut OverlaySpec, scene: &mut Scene) {
+    title(ui, "Photograph");
+    quiet(ui, photograph.colour.display().to_string());
+    match &photograph.depth {
+        Some(file) => quiet(ui, file.display().to_string()),
+        None => quiet(ui, "Drop its depth map on the window.".to_owned()),
+    }
+    let kinds: Vec<_> = DepthFileKind::ALL
+        .iter()
+        .map(|kind| (*kind, kind.name().to_owned()))
+        .collect();
+    choice(ui, "Depth", &mut photograph.depth_kind, &kinds);
+    Number::new("Unit", " m", 1e-4..=1e3)
+        .logarithmic()
+        .decimals(4)
+        .help("Metres for each unit of the depth map: 0.001 for millimetres.")
+        .show(ui, &mut photograph.depth_scale);
+    match &mut photograph.focal_px {
+        Some(focal_px) => {
+            Number::new("Focal length", " px", 10.0..=20_000.0)
+                .logarithmic()
+                .show(ui, focal_px);
+        }
+        None => {
+            let [_, widest] = FOV_DEG;
+            Number::new("Field of view", "°", 5.0..=widest)
+                .help("From the left to the right edge.")
+                .show_optional(ui, &mut scene.camera.fov_deg, 60.0);
+        }
+    }
+    Number::new("Inclination", "°", -90.0..=90.0)
+        .help("Elevation of the centre of the picture, which fog of a scale height depends on.")
+        .show_optional(ui, &mut scene.camera.elevation_deg, 0.0);
+    let mut light = match (photograph.sky_light, photograph.sun_strength) {
+        (true, _) => PhotographLight::Sky,
+        (false, Some(_)) => PhotographLight::Sun,
+        (false, None) => PhotographLight::Ambient,
+    };
+    let named = [
+        (PhotographLight::Ambient, "of the photograph"),
+        (PhotographLight::Sun, "with a sun"),
+        (PhotographLight::Sky, "of the sky"),
+    ];
+    if choice(
+        ui,
+        "Light",
+        &mut light,
+        &named.map(|(kind, text)| (kind, text.to_owned())),
+    ) {
+        photograph.sky_light = light == PhotographLight::Sky;
+        photograph.sun_strength = (light == PhotographLight::Sun).then_some(SUN_STRENGTH);
+        scene.sun.elevation_deg.get_or_insert(30.0);
+    }
+    if light != PhotographLight::Ambient {
+        Number::new("Elevation", "°", 0.1..=90.0)
+            .help("Of the sun above the horizontal.")
+            .show_optional(ui, &mut scene.sun.elevation_deg, 30.0);
+        scene.sun.elevation_deg.get_or_insert(30.0);
+        Number::new("Azimuth", "°", 0.0..=360.0)
+            .help("Of the sun, clockwise from north; the camera looks to the north.")
+            .show_optional(ui, &mut scene.sun.azimuth_deg, SUN_AZIMUTH_DEG);
+    }
+}
+
+/// Irradiance by a sun over a photograph, relative to that of its ambient light.
+const SUN_STRENGTH: f64 = 3.0;
+
+/// A light that is added: a street light in a direction.
+fn new_light(azimuth_deg: f64) -> LightSpec {
+    let [distance_m, height_m] = [15.0, 5.0];
+    let at = axes::direction(azimuth_deg, 0.0) * distance_m;
+    LightSpec {
+        position_m: Some([rounded(at.x), height_m, rounded(at.z)]),
+        intensity: [1000.0; 3],
+        ..Default::default()
+    }
+}
+
+fn lights(ui: &mut Ui, state: &mut State, facts: &Facts) {
+    if title(ui, "Lights") {
+        state.scene.lights.clear();
+    }
+    let ahead_deg = state.scene.camera.azimuth_deg;
+    let ahead_deg = ahead_deg.unwrap_or(facts.sun_azimuth_deg);
+    let lights = &mut state.scene.lights;
+    let id = egui::Id::unique("airlight light");
+    let mut chosen: usize = ui.data(|data| data.get_temp(id).unwrap_or(0));
+    ui.horizontal(|ui| {
+        let has_room = lights.len() < MOST_LIGHTS;
+        let add = ui.add_enabled(has_room, egui::Button::new("Add a light"));
+        if add.clicked() {
+            chosen = lights.len();
+            lights.push(new_light(ahead_deg));
+        }
+        let remove = ui.add_enabled(!lights.is_empty(), egui::Button::new("Remove it"));
+        if remove.clicked() && chosen < lights.len() {
+            lights.remove(chosen);
+        }
+    });
+    chosen = chosen.min(lights.len().saturating_sub(1));
+    if !lights.is_empty() {
+        let named: Vec<_> = (0..lights.len())
+            .map(|k| (k, format!("{} of {}", k + 1, lights.len())))
+            .collect();
+        choice(ui, "Light", &mut chosen, &named);
+    }
+    ui.data_mut(|data| data.insert_temp(id, chosen));
+    if let Some(light) = lights.get_mut(chosen) {
+        self::light(ui, light);
+        if !facts.holds_lights {
+            quiet(
+                ui,
+                "Lights shine in fog that has a scale height.".to_owned(),
+            );
+        }
+    }
+}
+
+fn light(ui: &mut Ui, light: &mut LightSpec) {
+    let kinds: Vec<_> = LightKind::ALL
+        .iter()
+        .map(|kind| (*kind, kind.name().to_owned()))
+        .collect();
+    choice(ui, "Kind", &mut light.kind, &kinds);
+    if let Some(position_m) = &mut light.position_m {
+        let [east_m, height_m, south_m] = position_m;
+        for (name, place_m, range) in [
+            ("To the east", east_m, -200.0..=200.0),
+            ("Height", height_m, 0.0..=100.0),
+            ("To the south", south_m, -200.0..=200.0),
+        ] {
+            Number::new(name, " m", range).show(ui, place_m);
+        }
+    }
+    let brightest = light.intensity.iter().copied().fold(0.0, f64::max);
+    let mut intensity = brightest;
+    let changed = Number::new("Intensity", " cd", 1.0..=1e6)
+        .logarithmic()
+        .decimals(0)
+        .help("Of its brightest colour.")
+        .show(ui, &mut intensity);
+    let mut colour = light.intensity.map(|v| match brightest > 0.0 {
+        true => (v / brightest) as f32,
+        false => 1.0,
+    });
+    let recoloured = ui
+        .horizontal(|ui| {
+            let name = crate::widgets::name(ui, "Colour", true);
+            let button = ui.color_edit_button_rgb(&mut colour);
+            button.labelled_by(name.id).changed()
+        })
+        .inner;
+    if changed || recoloured {
+        let largest = colour.iter().copied().fold(1e-3, f32::max);
+        light.intensity = colour.map(|v| intensity * f64::from(v / largest));
+    }
+    if light.kind == LightKind::Spot {
+        Number::new("Axis azimuth", "°", 0.0..=360.0)
+            .help("Clockwise from north.")
+            .show_optional(ui, &mut light.azimuth_deg, 0.0);
+        Number::new("Axis elevation", "°", -90.0..=90.0).show_optional(
+            ui,
+            &mut light.elevation_deg,
+            -90.0,
+        );
+        let inner_deg = light.inner_deg.unwrap_or(20.0);
+        Number::new("Cone", "°", inner_deg..=90.0)
+            .help("Angle from the axis beyond which it does not shine.")
+            .show_optional(ui, &mut light.outer_deg, 40.0);
+    }
+    if light.kind == LightKind::Sphere {
+        Number::new("Radius", " m", 0.01..=10.0)
+            .logarithmic()
+            .decimals(2)
+            .show_optional(ui, &mut light.radius_m, 0.1);
     }
 }
 
@@ -344,6 +557,67 @@ fn ground(ui: &mut Ui, state: &mut State) {
     }
 }
 
+/// How the exposure is found, and its numbers; `None` is automatic. A value or a camera starts where the picture is metered.
+fn exposure(ui: &mut Ui, exposure: &mut Option<Exposure>, metered_ev100: f64) {
+    let mut chosen = exposure.unwrap_or(Exposure::AUTO);
+    let (value, camera) = match chosen {
+        Exposure::Metered(_) => (rounded(metered_ev100), camera_at(metered_ev100)),
+        Exposure::Ev100(ev100) => (ev100, camera_at(ev100)),
+        Exposure::Camera(camera) => (rounded(camera.ev100()), camera),
+    };
+    let mut named: Vec<_> = MeteringMode::ALL
+        .iter()
+        .map(|mode| (Exposure::Metered(*mode), mode.name().to_owned()))
+        .collect();
+    named.push((Exposure::Ev100(value), "by exposure value".to_owned()));
+    named.push((Exposure::Camera(camera), "as a camera".to_owned()));
+    if choice(ui, "Exposure", &mut chosen, &named) {
+        *exposure = (chosen != Exposure::AUTO).then_some(chosen);
+    }
+    match exposure {
+        Some(Exposure::Ev100(ev100)) => {
+            Number::new("EV", " EV", -8.0..=18.0)
+                .help("Exposure value at ISO 100: 15 in sunshine, 8 at dusk.")
+                .show(ui, ev100);
+        }
+        Some(Exposure::Camera(camera)) => {
+            Number::new("f-number", "", 1.0..=32.0)
+                .logarithmic()
+                .help("Focal length over the diameter of the aperture.")
+                .show(ui, &mut camera.f_number);
+            Number::new("Exposure time", " s", 1.25e-4..=30.0)
+                .logarithmic()
+                .fractions()
+                .show(ui, &mut camera.time_s);
+            Number::new("ISO speed", "", 25.0..=25_600.0)
+                .logarithmic()
+                .decimals(0)
+                .show(ui, &mut camera.iso);
+            quiet(ui, format!("EV {:.1} at ISO 100", camera.ev100()));
+        }
+        _ => quiet(ui, format!("metered at EV {metered_ev100:.1}")),
+    }
+}
+
+/// A camera of an exposure value: f/8 and ISO 100, or a longer time and a wider aperture by little light.
+fn camera_at(ev100: f64) -> CameraExposure {
+    let [f_number, iso] = match ev100 {
+        8.0.. => [8.0, 100.0],
+        0.0..8.0 => [2.8, 400.0],
+        _ => [1.4, 3200.0],
+    };
+    let time_s = f_number * f_number * 100.0 / (iso * ev100.exp2());
+    let time_s = match time_s < 0.5 {
+        true => time_s.recip().round().recip(),
+        false => rounded(time_s),
+    };
+    CameraExposure {
+        f_number,
+        time_s,
+        iso,
+    }
+}
+
 fn display(ui: &mut Ui, state: &mut State, metered_ev100: f64) {
     if title(ui, "Picture") {
         state.scene.output = State::default().scene.output;
@@ -351,20 +625,10 @@ fn display(ui: &mut Ui, state: &mut State, metered_ev100: f64) {
     }
     size(ui, &mut state.scene.camera);
     let output = &mut state.scene.output;
-    let mut auto = !matches!(output.exposure, Some(Exposure::Ev100(_)));
-    if ui.checkbox(&mut auto, "Automatic exposure").changed() {
-        output.exposure = (!auto).then_some(Exposure::Ev100(rounded(metered_ev100)));
-    }
-    if auto {
-        Number::new("Brighten", " EV", -4.0..=4.0)
-            .help("Stops by which the picture is brighter than metered.")
-            .show_optional(ui, &mut output.brighten, 0.0);
-        quiet(ui, format!("metered at EV {metered_ev100:.1}"));
-    } else if let Some(Exposure::Ev100(ev100)) = &mut output.exposure {
-        Number::new("Exposure", " EV", -8.0..=18.0)
-            .help("Exposure value at ISO 100: 15 in sunshine, 8 at dusk.")
-            .show(ui, ev100);
-    }
+    exposure(ui, &mut output.exposure, metered_ev100);
+    Number::new("Brighten", " EV", -4.0..=4.0)
+        .help("Stops by which the picture is brighter than exposed.")
+        .show_optional(ui, &mut output.brighten, 0.0);
     let curves: Vec<_> = ToneKind::ALL
         .iter()
         .map(|kind| (*kind, kind.name().to_owned()))
@@ -396,11 +660,9 @@ fn compare(ui: &mut Ui, state: &mut State) {
     if title(ui, "Compare") {
         state.compare = None;
     }
-    // Monte Carlo takes minutes for a picture.
-    let models = registry::ALL.iter().map(|model| model.name());
-    let models = models.filter(|name| *name != "monte-carlo");
     let mut named = vec![(None, "nothing".to_owned())];
-    named.extend(models.map(|name| {
+    named.extend(registry::ALL.iter().map(|model| {
+        let name = model.name();
         let text = match name == registry::DEFAULT {
             true => "the solver".to_owned(),
             false => name.to_owned(),
@@ -411,10 +673,15 @@ fn compare(ui: &mut Ui, state: &mut State) {
     if choice(ui, "With", &mut model, &named) {
         let before = state.compare.take();
         state.compare = model.map(|model| Compare {
+            left: before.as_ref().and_then(|c| c.left.clone()),
             model,
             mode: before.as_ref().map_or(CompareMode::Split, |c| c.mode),
             split: before.as_ref().map_or(0.5, |c| c.split),
         });
+    }
+    if let Some(compare) = &mut state.compare {
+        named[0].1 = "the picture".to_owned();
+        choice(ui, "On the left", &mut compare.left, &named);
     }
     if let Some(compare) = &mut state.compare {
         let modes = [
@@ -427,7 +694,7 @@ fn compare(ui: &mut Ui, state: &mut State) {
         if compare.mode == CompareMode::Split {
             Number::new("Line", "", 0.0..=1.0)
                 .decimals(2)
-                .help("Left of it the picture, right of it the model.")
+                .help("Left of it the picture or a model, right of it the other.")
                 .show(ui, &mut compare.split);
         }
     }

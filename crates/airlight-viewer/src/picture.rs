@@ -1,6 +1,7 @@
 //! [`Picture`]: the light of a frame on the graphics device, and what of it is shown.
 
 use crate::compute::Light;
+use airlight::fog::lights::Light as FogLight;
 use airlight::scene::OutputSpec;
 use airlight_gpu::{
     Camera, HeightField, SkyPasses, SkyRendererError, TerrainPass, TerrainView, ToneCurve,
@@ -144,6 +145,7 @@ pub struct Picture {
 #[derive(Debug)]
 struct Targets {
     size: [u32; 2],
+    #[cfg(not(target_arch = "wasm32"))]
     light: wgpu::Texture,
     light_view: wgpu::TextureView,
     depth: wgpu::TextureView,
@@ -171,6 +173,14 @@ impl Picture {
         self.sky.set_tables(&light.tables);
         let view = &light.tables.sky.view;
         self.eye_m = [view.height_m, view.ground_radius_m].map(f64::from);
+    }
+
+    /// Draws these lights around the eye in the fog from now on.
+    ///
+    /// # Errors
+    /// [`SkyRendererError`] for invalid lights, and for too many.
+    pub fn set_lights(&mut self, lights: &[FogLight<[f32; 3]>]) -> Result<(), SkyRendererError> {
+        self.sky.set_lights(lights)
     }
 
     /// Draws ground of these heights from now on, in pictures that have any.
@@ -278,15 +288,8 @@ impl Picture {
 
     #[cfg(not(target_arch = "wasm32"))]
     fn light_in(&self, targets: &Targets) -> Result<Vec<[f32; 3]>, String> {
-        let bytes = airlight_gpu::read_texture(&self.device, &self.queue, &targets.light)
-            .map_err(|error| error.to_string())?;
-        let channel = |texel: &[u8; 8], c: usize| {
-            half::f16::from_ne_bytes([texel[2 * c], texel[2 * c + 1]]).to_f32()
-        };
-        let texels = bytes.as_chunks::<8>().0.iter();
-        Ok(texels
-            .map(|texel| std::array::from_fn(|c| channel(texel, c)))
-            .collect())
+        airlight_gpu::read_rgb(&self.device, &self.queue, &targets.light)
+            .map_err(|error| error.to_string())
     }
 
     fn new_targets(&self, shot: &Shot) -> Targets {
@@ -318,6 +321,7 @@ impl Picture {
         Targets {
             size: [width, height],
             light_view: view(&light),
+            #[cfg(not(target_arch = "wasm32"))]
             light,
             depth: view(&texture(depth, wgpu::TextureUsages::empty())),
             has_ground,

@@ -1,28 +1,39 @@
 //! [`State`]: what the user has set, and its history.
 
-use airlight::scene::{CameraSpec, Projection, Scene, SunSpec};
+use airlight::scene::{CameraSpec, Projection, Scene, SceneDocument, SceneError, SunSpec};
+use airlight_render::overlay::{OverlayScene, OverlaySpec};
+#[cfg(not(target_arch = "wasm32"))]
+use airlight_render::{RenderError, scene_file};
 use serde::{Deserialize, Serialize};
-
-/// Version of [`State`] that this viewer reads and writes.
-pub const STATE_VERSION: u32 = 1;
+#[cfg(not(target_arch = "wasm32"))]
+use std::path::Path;
 
 /// Lowest and highest altitude of the eye that the viewer sets, m.
 pub const ALTITUDES_M: [f64; 2] = [2.0, 4e5];
 
 /// Everything that the user has set.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct State {
-    /// Version of the format.
-    pub version: u32,
-    /// Sun, eye, air, fog, camera and display, as the program `airlight` reads them.
+    /// Sun, eye, air, fog, lights, camera and display, as the program `airlight` reads them.
     pub scene: Scene,
     /// Ground in front of the sky.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub terrain: Option<Terrain>,
     /// What the picture is compared with.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub compare: Option<Compare>,
+    /// A photograph with depth in the place of the sky, over which the scene's fog lies.
+    pub photograph: Option<OverlaySpec>,
+}
+
+/// The tables of a scene file beside those of the scene.
+#[derive(Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+struct Tables {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    terrain: Option<Terrain>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    compare: Option<Compare>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    overlay: Option<OverlaySpec>,
 }
 
 /// Ground of given heights, and where the eye stands on it. Beyond its edges it goes on as in mirrors.
@@ -41,11 +52,14 @@ pub struct Terrain {
     pub south_m: f64,
 }
 
-/// A comparison of the picture with a solver or a published model.
+/// A comparison with a solver or a published model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Compare {
-    /// Name of the model.
+    /// Name of the model on the left; without one, the picture.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub left: Option<String>,
+    /// Name of the model on the right.
     pub model: String,
     /// What is shown.
     pub mode: CompareMode,
@@ -57,9 +71,9 @@ pub struct Compare {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CompareMode {
-    /// The picture on the left, the model on the right of a line.
+    /// The picture or a model on the left, the model on the right of a line.
     Split,
-    /// Luminance of the picture relative to the model, in percent.
+    /// Luminance of the left relative to the model on the right, in percent.
     Luminance,
     /// Difference of colour, CIEDE2000.
     Colour,
@@ -101,10 +115,105 @@ impl State {
             .projection
             .get_or_insert(Projection::Perspective);
         Self {
-            version: STATE_VERSION,
             scene,
             terrain: None,
             compare: None,
+            photograph: None,
+        }
+    }
+
+    /// Reads a scene file, which may have tables `[terrain]`, `[compare]` and `[overlay]`.
+    ///
+    /// # Errors
+    /// [`SceneError`] with line, column, key and the most similar valid key.
+    pub fn from_toml(text: &str) -> Result<Self, SceneError> {
+        let document = SceneDocument::new(text)?;
+        let scene = document.scene(&[""], &["terrain", "compare", "overlay"])?;
+        let tables: Tables = document.read(&[""], &[])?;
+        Ok(Self {
+            terrain: tables.terrain,
+            compare: tables.compare,
+            photograph: tables.overlay,
+            ..Self::of_scene(scene)
+        })
+    }
+
+    /// Reads a scene file and the files that its scene names.
+    ///
+    /// # Errors
+    /// [`RenderError`] for files that cannot be read or are invalid.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn load(file: &Path) -> Result<Self, RenderError> {
+        let text = scene_file::read_text(file, "TOML")?;
+        let mut state = Self::from_toml(&text).map_err(|error| {
+            RenderError::setting(format!("scene `{}`: {error}", file.display()))
+        })?;
+        let folder = file.parent().unwrap_or(Path::new(""));
+        scene_file::inline_files(&mut state.scene, folder)?;
+        Ok(state)
+    }
+
+    /// Writes the scene, and the tables of what else is shown.
+    ///
+    /// # Errors
+    /// Why it cannot be written, as a sentence.
+    pub fn to_toml(&self) -> Result<String, String> {
+        let (scene, overlay) = match &self.photograph {
+            Some(photograph) => {
+                let fogged = self.fogged(photograph.clone());
+                (fogged.scene, Some(fogged.overlay))
+            }
+            None => (self.scene.clone(), None),
+        };
+        let tables = Tables {
+            terrain: self.terrain.clone(),
+            compare: self.compare.clone(),
+            overlay,
+        };
+        let scene = scene.to_toml().map_err(|error| error.to_string())?;
+        let tables = toml::to_string(&tables).map_err(|error| error.to_string())?;
+        Ok(format!("{scene}\n{tables}"))
+    }
+
+    /// A photograph in the scene's fog: what `airlight fog` is given. What it would refuse, as it means nothing to a photograph, is left
+    /// out: with a solved sky as light, the sun and the air remain, with a strength of the sun its direction.
+    pub fn fogged(&self, photograph: OverlaySpec) -> OverlayScene {
+        let scene = &self.scene;
+        let (is_lit_by_sky, has_sun) = (photograph.sky_light, photograph.sun_strength.is_some());
+        let usual = Scene::default();
+        let mut sun = match is_lit_by_sky || has_sun {
+            true => scene.sun.clone(),
+            false => usual.sun.clone(),
+        };
+        if !is_lit_by_sky {
+            (sun.latitude_deg, sun.longitude_deg, sun.time) = (None, None, None);
+        }
+        let camera = CameraSpec {
+            azimuth_deg: scene.camera.azimuth_deg,
+            elevation_deg: scene.camera.elevation_deg,
+            roll_deg: scene.camera.roll_deg,
+            fov_deg: scene
+                .camera
+                .fov_deg
+                .filter(|_| photograph.focal_px.is_none()),
+            ..Default::default()
+        };
+        OverlayScene {
+            scene: Scene {
+                sun,
+                camera,
+                air: match is_lit_by_sky {
+                    true => scene.air.clone(),
+                    false => usual.air.clone(),
+                },
+                fog: scene.fog.clone(),
+                lights: scene.lights.clone(),
+                ..usual
+            },
+            overlay: OverlaySpec {
+                layers: false,
+                ..photograph
+            },
         }
     }
 
@@ -166,6 +275,44 @@ impl History {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn states_are_written_and_read() {
+        let photograph = OverlaySpec {
+            colour: "garage.png".into(),
+            depth: Some("depth.png".into()),
+            depth_scale: 0.001,
+            focal_px: Some(995.0),
+            ..Default::default()
+        };
+        let scene =
+            "fog.visibility_m = 8\n[[lights]]\nposition_m = [0, 2, -3]\nintensity = [1, 1, 1]";
+        let ridge = State {
+            terrain: Some(Terrain {
+                east_m: 120.0,
+                ..Default::default()
+            }),
+            ..Default::default()
+        };
+        for state in [State::default(), ridge] {
+            let text = state.to_toml().unwrap();
+            assert_eq!(State::from_toml(&text).unwrap(), state, "{text}");
+        }
+        let foggy = State {
+            photograph: Some(photograph.clone()),
+            ..State::of_scene(Scene::from_toml(scene).unwrap())
+        };
+        let text = foggy.to_toml().unwrap();
+        let read = State::from_toml(&text).unwrap();
+        assert_eq!(read.fogged(photograph.clone()), foggy.fogged(photograph));
+        // What the program fogs.
+        let program = OverlayScene::from_toml(&text).unwrap();
+        assert_eq!(program.check().err().map(|error| error.to_string()), None);
+        let error = State::from_toml("[terain]\neast_m = 3")
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains("terain"), "{error}");
+    }
 
     #[test]
     fn states_are_undone_and_redone() {

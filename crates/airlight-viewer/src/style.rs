@@ -1,8 +1,10 @@
 //! Colours, type and spacing.
 
 use eframe::egui::{
-    self, Color32, CornerRadius, FontFamily, FontId, Margin, Stroke, TextStyle, vec2,
+    self, Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Stroke,
+    TextStyle, vec2,
 };
+use std::sync::Arc;
 
 /// Width of the panel, points.
 pub const PANEL_WIDTH: f32 = 316.0;
@@ -15,8 +17,21 @@ const PANEL: Color32 = Color32::from_rgb(20, 22, 25);
 const WIDGET: Color32 = Color32::from_rgb(42, 46, 52);
 const WIDGET_HOVERED: Color32 = Color32::from_rgb(58, 63, 71);
 
+/// The typeface of all text.
+fn fonts() -> FontDefinitions {
+    const NAME: &str = "Ubuntu-Light";
+    let mut fonts = FontDefinitions::empty();
+    let data = FontData::from_static(epaint_default_fonts::UBUNTU_LIGHT);
+    fonts.font_data.insert(NAME.to_owned(), Arc::new(data));
+    for names in fonts.families.values_mut() {
+        names.push(NAME.to_owned());
+    }
+    fonts
+}
+
 /// Sets the look of all widgets: dark, so that the picture is judged beside dim surroundings.
 pub fn apply(context: &egui::Context) {
+    context.set_fonts(fonts());
     context.set_theme(egui::Theme::Dark);
     context.all_styles_mut(|style| {
         style.text_styles = [

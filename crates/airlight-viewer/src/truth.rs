@@ -1,6 +1,6 @@
-//! Differences between what is drawn and what a model computes.
+//! Differences between what is drawn and what models compute.
 
-use crate::compute::{Colours, Light, SPACE};
+use crate::compute::{Light, SPACE};
 use airlight::spectrum::difference::{D65_WHITE, ciede2000, xyz_to_lab};
 use airlight_image::Frame;
 use eframe::egui::Color32;
@@ -50,25 +50,25 @@ pub struct Statistics {
     pub rms_ciede2000: f64,
 }
 
-/// Differences between the drawn light and a model's; `None` where either is black, and in directions without length.
-pub fn differences(
-    light: &Light,
-    directions: &[[f32; 3]],
-    colours: &Colours,
-) -> Vec<Option<Difference>> {
-    let xyz = |rgb: [f32; 3]| SPACE.to_xyz(rgb.map(f64::from));
-    let white = colours
-        .rgb
+/// Red, green and blue of what is drawn, cd/m^2; black in directions without length.
+pub fn drawn(light: &Light, directions: &[[f32; 3]]) -> Vec<[f32; 3]> {
+    let directions = directions
         .iter()
-        .map(|rgb| xyz(*rgb)[1])
-        .fold(0.0, f64::max);
+        .map(|d| Vec3::from_array(*d).try_normalize());
+    directions
+        .map(|d| d.map_or([0.0; 3], |d| light.tables.rgb_radiance(d).to_array()))
+        .collect()
+}
+
+/// Differences of colours from those that are taken as right; `None` where either is black.
+pub fn differences(colours: &[[f32; 3]], right: &[[f32; 3]]) -> Vec<Option<Difference>> {
+    let xyz = |rgb: &[f32; 3]| SPACE.to_xyz(rgb.map(f64::from));
+    let white = right.iter().map(|rgb| xyz(rgb)[1]).fold(0.0, f64::max);
     let lab = |xyz: [f64; 3]| xyz_to_lab(xyz.map(|v| 100.0 * v / white), D65_WHITE);
-    let pairs = directions.iter().zip(&colours.rgb);
+    let pairs = colours.iter().zip(right);
     pairs
-        .map(|(direction, rgb)| {
-            let direction = Vec3::from_array(*direction).try_normalize()?;
-            let drawn = light.tables.rgb_radiance(direction);
-            let [got, right] = [drawn.to_array(), *rgb].map(xyz);
+        .map(|(got, right)| {
+            let [got, right] = [got, right].map(xyz);
             (got[1] > 0.0 && right[1] > 1e-4 * white).then(|| Difference {
                 percent: 100.0 * (got[1] / right[1] - 1.0),
                 ciede2000: ciede2000(lab(got), lab(right)),

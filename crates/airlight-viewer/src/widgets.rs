@@ -21,6 +21,8 @@ pub struct Number {
     pub logarithmic: bool,
     /// Decimals that are shown at most.
     pub decimals: usize,
+    /// Whether small numbers are shown as parts of 1.
+    pub fractions: bool,
     /// What it means, shown beside the pointer.
     pub help: &'static str,
 }
@@ -34,6 +36,7 @@ impl Number {
             range,
             logarithmic: false,
             decimals: 1,
+            fractions: false,
             help: "",
         }
     }
@@ -49,6 +52,14 @@ impl Number {
     /// The same with a number of decimals.
     pub fn decimals(self, decimals: usize) -> Self {
         Self { decimals, ..self }
+    }
+
+    /// The same with numbers below a third as parts of 1, such as 1/125.
+    pub fn fractions(self) -> Self {
+        Self {
+            fractions: true,
+            ..self
+        }
     }
 
     /// The same with an explanation.
@@ -86,6 +97,12 @@ impl Number {
                 .clamping(SliderClamping::Edits)
                 .suffix(self.unit)
                 .max_decimals(self.decimals);
+            let slider = match self.fractions {
+                true => slider
+                    .custom_formatter(|number, _| fraction_text(number))
+                    .custom_parser(fraction),
+                false => slider,
+            };
             ui.spacing_mut().slider_width = SLIDER_WIDTH;
             let response = ui.add(slider).labelled_by(name.id);
             let reset = name.secondary_clicked()
@@ -105,6 +122,24 @@ impl Number {
             false => 1e-3 * self.range.end(),
         }
     }
+}
+
+/// A number as a part of 1, such as 1/125, unless it is large.
+fn fraction_text(number: f64) -> String {
+    match number < 1.0 / 3.0 {
+        true => format!("1/{}", number.recip().round()),
+        false => format!("{:.1}", number),
+    }
+}
+
+/// A number that may be written as a fraction.
+fn fraction(text: &str) -> Option<f64> {
+    let number = |text: &str| text.trim().parse::<f64>().ok();
+    let value = match text.split_once('/') {
+        Some((over, under)) => number(over)? / number(under)?,
+        None => number(text)?,
+    };
+    value.is_finite().then_some(value)
 }
 
 /// The name of a control.

@@ -58,9 +58,9 @@ pub struct DisplayArgs {
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Picture")]
 pub struct ToneArgs {
-    /// Exposure of .png, .jpg and preview: the exposure value of a camera at ISO 100 (sunny day 15, dusk 8), or metered: auto,
-    /// centre-weighted, spot, average, highlight-weighted, incident [default: auto]
-    #[arg(long, value_name = "MODE|EV100", value_parser = parse::exposure)]
+    /// Exposure of .png, .jpg and preview: the exposure value of a camera at ISO 100 (sunny day 15, dusk 8), its settings ('f/8
+    /// 1/125 s ISO 100'), or metered: auto, centre-weighted, spot, average, highlight-weighted, incident [default: auto]
+    #[arg(long, value_name = "MODE|EV100|CAMERA", value_parser = parse::exposure)]
     pub exposure: Option<Exposure>,
     /// Stops by which .png, .jpg and preview are brightened (negative: darkened) [default: 0]
     #[arg(long, value_name = "STOPS", value_parser = parse::number)]

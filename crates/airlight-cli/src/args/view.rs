@@ -42,35 +42,27 @@ pub struct ViewArgs {
 }
 
 impl ViewArgs {
-    /// The scene of the file, or another, with the options.
+    /// A scene, that of the file if there is one, with the options over it.
     ///
     /// # Errors
     /// [`CliError`] if a file cannot be read or is invalid.
-    pub fn read(&self, usual: Scene) -> Result<Scene, CliError> {
-        let scene = SceneArgs {
-            scene: self.file.clone(),
-            place: self.place.clone(),
+    pub fn over(&self, mut scene: Scene) -> Result<Scene, CliError> {
+        let place = &self.place;
+        if self.file.is_none() && (place.at.is_some() || place.sun_elevation.is_some()) {
+            // Towards the sun.
+            scene.camera.azimuth_deg = None;
+        }
+        let options = SceneArgs {
+            place: place.clone(),
             air: self.air.clone(),
             contrast: self.contrast.clone(),
             fog: self.fog.clone(),
             ..Default::default()
         };
-        let more = |scene: &mut Scene| {
+        options.over(scene, |scene| {
             self.camera.fill(&mut scene.camera);
             self.tone.fill(&mut scene.output);
-        };
-        match self.file {
-            Some(_) => scene.read(more),
-            None => {
-                let mut usual = usual;
-                let place = &self.place;
-                if place.at.is_some() || place.sun_elevation.is_some() {
-                    // Towards the sun.
-                    usual.camera.azimuth_deg = None;
-                }
-                scene.over(usual, more)
-            }
-        }
+        })
     }
 }
 

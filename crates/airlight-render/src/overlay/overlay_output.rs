@@ -167,6 +167,11 @@ impl<'a> OverlayOutput<'a> {
         &self.overlay
     }
 
+    /// The tone mapper with which PNG and JPEG files show the rows.
+    pub fn tone(&self) -> &ToneMapper {
+        &self.tone
+    }
+
     /// The format of the file.
     pub fn format(&self) -> PictureFormat {
         self.format

@@ -1,13 +1,11 @@
 //! Positions of a description's lights in front of a picture's camera.
 
 use crate::RenderError;
-use airlight::axes;
-use airlight::fog::lights::{Light, PointLight, SphereLight, SpotLight};
-use airlight::scene::{LightKind, LightSpec};
+use airlight::fog::lights::Light;
+use airlight::scene::LightSpec;
 use airlight_image::frame::Intrinsics;
 use airlight_image::input::{DepthKind, DepthMap};
 use glam::DVec3;
-use std::f64::consts::PI;
 
 /// Smallest default radius of a light, m.
 const MIN_RADIUS_M: f64 = 0.005;
@@ -58,44 +56,10 @@ fn place_one(
             return Err("expected a position, got none; try position_m or pixel".to_owned());
         }
     };
-    let intensity = light.intensity.map(|v| v as f32);
     let pixel_m = position.distance(eye) / camera.focal_px().0.max(camera.focal_px().1);
-    let radius_m = light
-        .radius_m
-        .unwrap_or_else(|| (RADIUS_PX * pixel_m).max(MIN_RADIUS_M));
-    let placed = match light.kind {
-        LightKind::Spot => {
-            let (inner_deg, outer_deg) = cone_deg(light);
-            SpotLight::new(
-                position,
-                axes::direction(
-                    light.azimuth_deg.unwrap_or(0.0),
-                    light.elevation_deg.unwrap_or(-90.0),
-                ),
-                intensity,
-                inner_deg.to_radians(),
-                outer_deg.to_radians(),
-                radius_m,
-            )
-            .map(Light::Spot)
-        }
-        LightKind::Sphere => {
-            let area_m2 = PI * radius_m * radius_m;
-            let radiance = intensity.map(|v| v / area_m2 as f32);
-            SphereLight::new(position, radius_m, radiance).map(Light::Sphere)
-        }
-        _ => PointLight::new(position, intensity, radius_m).map(Light::Point),
-    };
+    let usual_radius_m = (RADIUS_PX * pixel_m).max(MIN_RADIUS_M);
+    let placed = light.at(position, usual_radius_m);
     placed.map_err(|error| error.to_string())
-}
-
-/// Inner and outer angle of a spot light's cone, degrees.
-fn cone_deg(light: &LightSpec) -> (f64, f64) {
-    let inner = light.inner_deg;
-    let outer = light
-        .outer_deg
-        .unwrap_or_else(|| inner.map_or(40.0, |inner| inner.max(40.0)));
-    (inner.unwrap_or(outer.min(20.0)), outer)
 }
 
 /// The pixel with whole coordinates in the picture.

@@ -1,19 +1,30 @@
 //! The viewer in a window that is not shown, on a Vulkan device.
 
-use airlight::atmosphere::Preset;
+use airlight::atmosphere::{DensityProfile, Preset};
 use airlight::axes;
+use airlight::fog::droplets::Droplets;
+use airlight::fog::lights::{LightSettings, RgbLightSet, ViewRay};
+use airlight::fog::visibility::{self, Contrast};
+use airlight::fog::{Ground, RgbLayer};
+use airlight::glam::DVec3;
+use airlight::optics::PhaseFunction;
 use airlight::scene::{Scene, SunState};
 use airlight::sky::{Sky, SkySettings, SunCoverage};
+use airlight::spectrum::rgb::srgb_decode;
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use airlight::sun::Moment;
+use airlight_image::output::PictureFormat;
 use airlight_image::{Camera, Control, Frame, Projection, Size, read_picture};
 use airlight_render::Renderer;
+use airlight_render::overlay::{OverlayImage, OverlayScene, PreparedOverlay};
 use airlight_viewer::state::{Compare, CompareMode, Terrain};
 use airlight_viewer::{Options, State, Viewer, screenshot};
-use eframe::egui::{self, Key, Modifiers, Pos2, pos2, vec2};
+use eframe::egui::{self, Key, Modifiers, Pos2, Role, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 const SIZE: [f32; 2] = [640.0, 420.0];
 
@@ -172,6 +183,7 @@ fn models_are_compared_with_the_picture() {
     let mut options = options(EVENING);
     let compare = |model: &str, mode| {
         Some(Compare {
+            left: None,
             model: model.to_owned(),
             mode,
             split: 0.5,
@@ -212,6 +224,64 @@ fn models_are_compared_with_the_picture() {
     settle(&mut window);
     let text = window.state().judgement().unwrap();
     assert!(errors(&text)[1] > 5.0 && text.contains("red"), "{text}");
+}
+
+/// Two models beside each other, the difference between them, and Monte Carlo, whose noise falls.
+#[test]
+fn any_two_sides_are_compared() {
+    let mut options = options(EVENING);
+    options.size = [440.0, 200.0];
+    options.state.compare = Some(Compare {
+        left: Some("orders".to_owned()),
+        model: "orders".to_owned(),
+        mode: CompareMode::Split,
+        split: 0.5,
+    });
+    let mut window = window(options);
+    settle(&mut window);
+    let text = window.state().judgement().unwrap();
+    assert!(
+        text.contains("orders from orders: luminance 0.00 % rms"),
+        "{text}"
+    );
+    let set = |window: &mut Harness<'_, Viewer>, left: &str, model: &str| {
+        let mut state = window.state().state().clone();
+        let compare = state.compare.as_mut().unwrap();
+        (compare.left, compare.model) = (Some(left.to_owned()), model.to_owned());
+        window.state_mut().set_state(state);
+        settle(window);
+        window.state().judgement().unwrap()
+    };
+    let number_before = |text: &str, end: &str| -> f64 {
+        let (before, _) = text.split_once(end).expect(text);
+        before.rsplit(' ').next().unwrap().parse().unwrap()
+    };
+    let text = set(&mut window, "hillaire2020", "orders");
+    let line = text.lines().last().unwrap();
+    assert!(
+        line.starts_with("difference of hillaire2020 from orders"),
+        "{text}"
+    );
+    assert!(number_before(line, " % rms") > 5.0, "{text}");
+    let text = set(&mut window, "monte-carlo", "orders");
+    let line = text.lines().last().unwrap();
+    let (paths, noise) = (
+        number_before(line, " paths"),
+        number_before(line.rsplit_once("noise ").unwrap().1, " %"),
+    );
+    // The difference is noise.
+    let rms = number_before(line, " % rms");
+    println!("{paths} paths: noise {noise} %, rms {rms} %");
+    assert!(rms < 2.0 * noise + 0.5, "{text}");
+    for _ in 0..2 {
+        window.step();
+        window.state_mut().wait();
+    }
+    let text = window.state().judgement().unwrap();
+    let line = text.lines().last().unwrap();
+    let less_noise = number_before(line.rsplit_once("noise ").unwrap().1, " %");
+    assert!(number_before(line, " paths") > paths, "{text}");
+    assert!(less_noise < noise, "{text}");
 }
 
 /// A click on a pixel against the solver there.
@@ -362,6 +432,7 @@ fn the_sun_and_the_line_of_a_comparison_are_dragged() {
     assert_ne!(window.state().state().scene.camera, camera);
     let mut state = window.state().state().clone();
     state.compare = Some(Compare {
+        left: None,
         model: "preetham".to_owned(),
         mode: CompareMode::Split,
         split: 0.5,
@@ -440,6 +511,213 @@ fn the_eye_stands_on_terrain() {
     assert!(error.contains("none.png"), "{error}");
 }
 
+/// A night in fog.
+const NIGHT: &str = "
+        sun = { elevation_deg = -12, azimuth_deg = 250 }
+        observer.altitude_m = 3
+        air.atmosphere = \"clear\"
+        fog = { visibility_m = 300, scale_height_m = 40 }
+        camera = { azimuth_deg = 0, elevation_deg = 4, fov_deg = 80 }
+        output.exposure = 4
+";
+
+const LIGHTS: &str = "
+        [[lights]]
+        position_m = [-5, 5, -20]
+        intensity = [1e5, 8e4, 5e4]
+        [[lights]]
+        kind = \"spot\"
+        position_m = [8, 12, -40]
+        intensity = [1e6, 1e6, 1.2e6]";
+
+/// What street lights add to the picture, against the library's lights in the same fog: with Henyey and Greenstein's function of the mean
+/// cosine of its droplets, which the picture has, and with that of the droplets.
+#[test]
+fn lights_in_fog_are_those_of_the_library() {
+    let scene = format!("{NIGHT}{LIGHTS}");
+    let mut options = options(&scene);
+    options.size = [200.0, 100.0];
+    options.panel = false;
+    let lit = options.state.scene.lights.clone();
+    let mut window = window(options);
+    settle(&mut window);
+    let ([width, height], with) = window.state().pixels().unwrap();
+    let mut state = window.state().state().clone();
+    state.scene.lights.clear();
+    window.state_mut().set_state(state);
+    settle(&mut window);
+    let (_, without) = window.state().pixels().unwrap();
+    let camera = Camera::with_horizontal_fov(0.0, 4.0, 80.0, Size::new(width, height).unwrap());
+    let frame = Frame::new(Projection::Perspective(camera), width, height).unwrap();
+    let extinction_per_m = visibility::extinction_per_m(300.0, Contrast::default());
+    let droplets = Droplets::default().phase();
+    let mean_cosine = droplets.asymmetry(550.0);
+    let drawn = PhaseFunction::henyey_greenstein(mean_cosine).unwrap();
+    let eye = DVec3::Y * 3.0;
+    for (phase, rms_at_most) in [(drawn, 0.002), (droplets, 0.4)] {
+        let fog = RgbLayer {
+            density: DensityProfile::exponential(40.0),
+            extinction_per_m: [extinction_per_m as f32; 3],
+            single_scattering_albedo: [1.0; 3],
+            phase,
+        };
+        let lights = lit.iter().map(|light| {
+            let position = DVec3::from_array(light.position_m.unwrap());
+            // No ray that is compared passes so close.
+            light.at(position, 0.01).unwrap()
+        });
+        let set = RgbLightSet::new(
+            lights.collect(),
+            &[fog],
+            Ground::FLAT,
+            LightSettings::default(),
+        );
+        let set = set.unwrap();
+        let (mut squares, mut count, mut worst) = (0.0, 0, 0.0f64);
+        for k in (0..width * height).step_by(3) {
+            let direction = frame.pixel_direction(k % width, k / width).unwrap();
+            let towards = |light: &airlight::scene::LightSpec| {
+                let from_eye = DVec3::from_array(light.position_m.unwrap()) - eye;
+                from_eye.normalize().dot(direction)
+            };
+            if lit.iter().any(|light| towards(light) > 0.9999) {
+                continue;
+            }
+            let length_m = match direction.y < 0.0 {
+                true => 3.0 / -direction.y,
+                false => f64::INFINITY,
+            };
+            let right = set.path_radiance(&ViewRay {
+                eye,
+                direction,
+                length_m,
+            });
+            let luminance = |rgb: [f32; 3]| RgbSpace::Srgb.luminance(rgb.map(f64::from));
+            let [with, without] = [&with, &without].map(|all| luminance(all[k as usize]));
+            // Differences of half floats.
+            if with < 2.0 * without {
+                continue;
+            }
+            let error = (with - without) / luminance(right) - 1.0;
+            squares += error * error;
+            count += 1;
+            worst = worst.max(error.abs());
+        }
+        let rms = (squares / f64::from(count)).sqrt();
+        println!("{count} pixels: rms {rms:.4}, worst {worst:.4}");
+        assert!(count > 1000 && rms < rms_at_most, "{count} {rms}");
+    }
+    assert_eq!(window.state().light_error(), None);
+}
+
+#[test]
+fn lights_are_set_by_controls() {
+    let mut options = options(NIGHT);
+    // Room for all controls.
+    options.size = [640.0, 2000.0];
+    let mut window = window(options);
+    settle(&mut window);
+    let before = window.state().pixels().unwrap();
+    window.get_by_label("Add a light").click_accesskit();
+    settle(&mut window);
+    assert_eq!(window.state().state().scene.lights.len(), 1);
+    assert!(window.state().pixels().unwrap() != before);
+    window.get_by_label("Remove it").click_accesskit();
+    settle(&mut window);
+    assert_eq!(window.state().state().scene.lights, Vec::new());
+    assert!(window.state().pixels().unwrap() == before);
+}
+
+fn motorcycle() -> [PathBuf; 2] {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/motorcycle");
+    ["left.png", "depth_mm.png"].map(|name| folder.join(name))
+}
+
+/// A file on a disk that is dropped on the window.
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+/// A photograph and its depth map are dropped on the window and fogged, as the library fogs them; the fog follows its controls.
+#[test]
+fn a_photograph_is_fogged_as_the_library_does() {
+    let mut window = window(options(EVENING));
+    settle(&mut window);
+    for file in motorcycle() {
+        window
+            .input_mut()
+            .dropped_files
+            .push(Arc::new(Dropped(file)));
+        window.step();
+    }
+    let mut state = window.state().state().clone();
+    let [colour, depth] = motorcycle();
+    let photograph = state.photograph.as_mut().unwrap();
+    assert_eq!(
+        (&photograph.colour, photograph.depth.as_ref()),
+        (&colour, Some(&depth))
+    );
+    photograph.depth_scale = 0.001;
+    photograph.focal_px = Some(994.978);
+    let folder = std::env::temp_dir().join(format!("airlight-fogged-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let [right, saved, toml] =
+        ["right.png", "saved.png", "scene.toml"].map(|name| folder.join(name));
+    let mut before = Vec::new();
+    for (visibility_m, scale_height_m, sun_strength) in [
+        (8.0, None, None),
+        (4.0, None, None),
+        (4.0, Some(0.5), Some(3.0)),
+    ] {
+        let fog = state.scene.fog.as_mut().unwrap();
+        (fog.visibility_m, fog.scale_height_m) = (Some(visibility_m), scale_height_m);
+        state.photograph.as_mut().unwrap().sun_strength = sun_strength;
+        window.state_mut().set_state(state.clone());
+        settle(&mut window);
+        let developed = window.state().photograph().unwrap().unwrap().clone();
+        assert_eq!(developed.size, [741, 500]);
+        assert_ne!(developed.rgb, before);
+        // The description that is saved, read and fogged by the library.
+        window.state_mut().save(&toml).unwrap();
+        let text = std::fs::read_to_string(&toml).unwrap();
+        let scene = OverlayScene::from_toml(&text).unwrap();
+        scene.check().unwrap();
+        let image = OverlayImage::read(&scene, PictureFormat::PNG).unwrap();
+        let prepared = PreparedOverlay::new(&scene, &image, None).unwrap();
+        let rows = prepared.output(&scene, &image, PictureFormat::PNG).unwrap();
+        rows.write(&right, Control::default()).unwrap();
+        window.state_mut().save(&saved).unwrap();
+        assert_eq!(
+            std::fs::read(&saved).unwrap(),
+            std::fs::read(&right).unwrap()
+        );
+        let right = read_picture(&right, None).unwrap();
+        for (level, right) in developed.rgb.iter().zip(&right.rgb) {
+            let light = srgb_decode(f64::from(*level) / 255.0) as f32;
+            assert!((light - right).abs() < 1e-5, "{light} {right}");
+        }
+        before = developed.rgb;
+    }
+    // Without depth there is no fog.
+    state.photograph.as_mut().unwrap().depth = None;
+    window.state_mut().set_state(state);
+    window.step();
+    window.state_mut().wait();
+    window.step();
+    let error = window.state().photograph().unwrap().unwrap_err().to_owned();
+    assert!(error.contains("depth"), "{error}");
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
 #[test]
 fn groups_of_controls_are_reset() {
     let mut window = window(options(EVENING));
@@ -484,6 +762,29 @@ fn every_control_has_a_name_and_is_reached_by_keyboard() {
     ] {
         assert!(reached.contains(name), "{name}: {reached:?}");
     }
+}
+
+#[test]
+fn pictures_of_half_the_resolution_have_a_quarter_of_the_pixels() {
+    let mut options = options(EVENING);
+    // Room for all controls.
+    options.size = [640.0, 1600.0];
+    let mut window = window(options);
+    settle(&mut window);
+    let (full, _) = window.state().pixels().unwrap();
+    let combo = |window: &mut Harness<'_, Viewer>, name: &str| {
+        window
+            .get_by_role_and_label(Role::ComboBox, name)
+            .click_accesskit();
+        window.step();
+        window.step();
+    };
+    combo(&mut window, "Resolution");
+    window.get_by_label("half").click_accesskit();
+    window.step();
+    window.step();
+    let (half, _) = window.state().pixels().unwrap();
+    assert_eq!(half, full.map(|side| side / 2));
 }
 
 #[test]

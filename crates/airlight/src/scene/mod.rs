@@ -63,10 +63,11 @@ pub use resolved::ResolvedScene;
 pub use rgb_foggy_sky::RgbFoggySky;
 pub(crate) use solved_view::SolvedView;
 pub use spec::{
-    AirSpec, BaseBlueKind, CameraSpec, CheckerSpec, Effort, Exposure, ExrCompression, FogLayerSpec,
-    FogPatchesSpec, FogProfile, FogSpec, Gamut, GlossSpec, Klassen1987Spec, LightKind, LightSpec,
-    MeteringMode, NightLights, NightSpec, ObjectShape, ObjectSpec, ObjectsSpec, ObserverSpec,
-    Orientation, OutputSpec, Projection, Reflectance, RepeatSpec, SCENE_VERSION, SamplePrecision,
-    Scene, SequenceSpec, SolverSpec, SunDiscPlacement, SunSpec, SunlightKind, ToneKind, WetHaze,
+    AirSpec, BaseBlueKind, CameraExposure, CameraExposureError, CameraSpec, CheckerSpec, Effort,
+    Exposure, ExrCompression, FogLayerSpec, FogPatchesSpec, FogProfile, FogSpec, Gamut, GlossSpec,
+    Klassen1987Spec, LightKind, LightSpec, MeteringMode, NightLights, NightSpec, ObjectShape,
+    ObjectSpec, ObjectsSpec, ObserverSpec, Orientation, OutputSpec, Projection, Reflectance,
+    RepeatSpec, SCENE_VERSION, SamplePrecision, Scene, SequenceSpec, SolverSpec, SunDiscPlacement,
+    SunSpec, SunlightKind, ToneKind, WetHaze,
 };
 pub use sun_source::{SunAngles, SunSource};

@@ -119,6 +119,12 @@ fn scenes_round_trip_through_toml() {
     assert_eq!(Scene::from_toml("").unwrap(), Scene::default());
     let manual = Scene::from_toml("output.exposure = 14.5").unwrap();
     assert_eq!(manual.output.exposure, Some(Exposure::Ev100(14.5)));
+    let camera = "output = { exposure = \"f/8 1/125 s ISO 100\" }";
+    let camera = Scene::from_toml(camera).unwrap();
+    let ev100 = camera.output.exposure.and_then(Exposure::ev100).unwrap();
+    assert!((ev100 - (64.0f64 * 125.0).log2()).abs() < 1e-12, "{ev100}");
+    let text = camera.to_toml().unwrap();
+    assert_eq!(Scene::from_toml(&text).unwrap(), camera, "{text}");
 }
 
 #[test]

@@ -4,6 +4,7 @@
 //! is refused if the solver would ignore it ([`Scene::set_inputs`]).
 
 mod air;
+mod exposure;
 mod fog;
 mod lights;
 mod night;
@@ -14,6 +15,7 @@ mod solver;
 mod validate;
 
 pub use air::AirSpec;
+pub use exposure::{CameraExposure, CameraExposureError, Exposure, MeteringMode};
 pub use fog::{FogLayerSpec, FogPatchesSpec, FogProfile, FogSpec};
 pub use lights::{LightKind, LightSpec};
 pub use night::{NightLights, NightSpec};
@@ -22,8 +24,8 @@ pub use objects::{
 };
 pub use orientation::Orientation;
 pub use picture::{
-    CameraSpec, Exposure, ExrCompression, Gamut, MeteringMode, OutputSpec, Projection,
-    SamplePrecision, SequenceSpec, SunDiscPlacement, ToneKind,
+    CameraSpec, ExrCompression, Gamut, OutputSpec, Projection, SamplePrecision, SequenceSpec,
+    SunDiscPlacement, ToneKind,
 };
 pub use solver::{BaseBlueKind, Effort, Klassen1987Spec, SolverSpec, SunlightKind, WetHaze};
 

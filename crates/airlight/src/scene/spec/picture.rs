@@ -1,6 +1,6 @@
 //! Picture of a scene: projection, file and sequence.
 
-use super::Orientation;
+use super::{Exposure, Orientation};
 use crate::names::named;
 use crate::spectrum::RgbSpace;
 
@@ -143,58 +143,6 @@ named! { ToneKind, "a tone curve", [
     ("clip", (Clip), "linear, clipped at white"),
 ] }
 
-/// Exposure of PNG, JPEG and preview: a metering mode, or the exposure value of a camera at ISO 100 (sunny day 15, dusk 8).
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(
-    feature = "serde",
-    serde(
-        untagged,
-        expecting = "expected a metering mode (auto, centre-weighted, spot, average, highlight-weighted, incident) or an exposure \
-            value at ISO 100, such as 14.5"
-    )
-)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub enum Exposure {
-    /// Determined from the picture.
-    Metered(MeteringMode),
-    /// Exposure value at ISO 100.
-    Ev100(f64),
-}
-
-impl Exposure {
-    /// Exposure from the picture's luminances.
-    pub const AUTO: Self = Self::Metered(MeteringMode::Evaluative);
-}
-
-/// What automatic exposure is metered from. All modes meter without the sun's disc.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum MeteringMode {
-    /// The sky more than the ground, without the brightest and darkest parts; dusk stays darker than day.
-    #[default]
-    Evaluative,
-    /// The mean luminance, mostly of the centre, is middle grey.
-    CentreWeighted,
-    /// The mean luminance of 2.5 % of the picture, in its centre, is middle grey.
-    Spot,
-    /// The mean luminance is middle grey.
-    Average,
-    /// The brightest hundredth is just below white.
-    HighlightWeighted,
-    /// A grey card that faces the zenith is middle grey.
-    Incident,
-}
-
-named! { MeteringMode, "a metering mode", [
-    ("auto", (Evaluative), "evaluative: the sky more than the ground, without the brightest and darkest parts; dusk stays darker than day"),
-    ("centre-weighted", (CentreWeighted), "the mean luminance, mostly of the centre, is middle grey"),
-    ("spot", (Spot), "the mean luminance of 2.5 % of the picture, in its centre, is middle grey"),
-    ("average", (Average), "the mean luminance is middle grey"),
-    ("highlight-weighted", (HighlightWeighted), "the brightest hundredth is just below white"),
-    ("incident", (Incident), "a grey card that faces the zenith is middle grey"),
-], aliases [("evaluative", (Evaluative)), ("matrix", (Evaluative)), ("center-weighted", (CentreWeighted))] }
-
 /// Picture file and its encoding.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -217,7 +165,8 @@ pub struct OutputSpec {
     pub precision: Option<SamplePrecision>,
     /// Lossless compression of .exr samples. Default: zip.
     pub compression: Option<ExrCompression>,
-    /// Exposure of .png, .jpg and preview: a metering mode or an exposure value at ISO 100. Default: auto.
+    /// Exposure of .png, .jpg and preview: a metering mode, an exposure value at ISO 100 or the settings of a camera.
+    /// Default: auto.
     pub exposure: Option<Exposure>,
     /// Stops by which .png, .jpg and preview are brightened (negative: darkened). Default: 0.
     pub brighten: Option<f64>,

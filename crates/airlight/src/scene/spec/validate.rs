@@ -297,9 +297,8 @@ impl Scene {
                 ));
             }
         }
-        if let Some(Exposure::Ev100(ev100)) = output.exposure {
-            number("output.exposure", Some(ev100), FINITE)?;
-        }
+        let ev100 = output.exposure.and_then(Exposure::ev100);
+        number("output.exposure", ev100, FINITE)?;
         if let Some(bits) = output.bits.filter(|bits| ![8, 16].contains(bits)) {
             return Err(SceneError::value(
                 "output.bits",
