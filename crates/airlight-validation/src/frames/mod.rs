@@ -5,91 +5,28 @@
 //! sky, behind 0.1 to 100 km of air. Of the published models, the sky is marched along each ray at three wavelengths, whose responses
 //! are taken as red, green and blue, as real-time programs do.
 
+mod case;
 mod pixels;
 mod renderers;
 
+pub use case::{AIRS, Case, FramesError, HEIGHTS_M, SUNS_DEG};
+
 use crate::check::{At, Check, Row, Suite, Unit};
 use crate::skies::truth_air;
+use airlight::Control;
 use airlight::atmosphere::Atmosphere;
 use airlight::axes;
-use airlight::glam::DVec3;
 use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings};
-use airlight::scene::SceneError;
-use airlight::sky::{Sky, SkyError, SkySettings, SunCoverage, View};
+use airlight::sky::{Sky, SkySettings, SunCoverage, View};
 use airlight::spectrum::{WavelengthGrid, difference};
-use airlight::{Cancelled, Control};
-use airlight_gpu::SkyRendererError;
-use airlight_gpu::headless::{Headless, HeadlessError};
+use airlight_gpu::headless::Headless;
 use pixels::{Pixel, Wall, pixels};
 use renderers::{Engine, Published, Seen};
 
-/// Elevations of the sun, degrees.
-pub const SUNS_DEG: [f64; 9] = [60.0, 30.0, 10.0, 5.0, 2.0, 0.0, -2.0, -4.0, -6.0];
-/// Heights of the eye above sea level, m.
-pub const HEIGHTS_M: [f64; 4] = [2.0, 3e3, 1e4, 4e5];
-/// Names of the atmospheres, after [`truth_air`].
-pub const AIRS: [&str; 4] = ["clear", "average", "hazy", "desert"];
 /// Directions compared in each frame.
 pub const DIRECTIONS: usize = 64;
 /// Luminance relative to that of the white, below which a pixel counts as black.
 const DARK: f64 = 1e-3;
-
-/// An atmosphere, a sun and an eye.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Case {
-    /// Name of the atmosphere, after [`truth_air`].
-    pub air: &'static str,
-    /// Elevation of the sun, degrees.
-    pub sun_deg: f64,
-    /// Height of the eye above sea level, m.
-    pub height_m: f64,
-}
-
-impl Case {
-    /// All atmospheres, suns and heights.
-    pub fn all() -> Vec<Self> {
-        AIRS.into_iter().flat_map(Self::in_air).collect()
-    }
-
-    /// All suns and heights in an atmosphere.
-    pub fn in_air(air: &'static str) -> impl Iterator<Item = Self> {
-        SUNS_DEG.into_iter().flat_map(move |sun_deg| {
-            HEIGHTS_M.map(|height_m| Self {
-                air,
-                sun_deg,
-                height_m,
-            })
-        })
-    }
-
-    fn sun(&self) -> DVec3 {
-        axes::direction(SUN_AZIMUTH_DEG, self.sun_deg)
-    }
-}
-
-/// Azimuth of the sun in all cases, degrees.
-const SUN_AZIMUTH_DEG: f64 = 140.0;
-
-/// Error of a comparison of frames.
-#[derive(Clone, Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum FramesError {
-    /// No device to draw with, or a device that is lost.
-    #[error(transparent)]
-    Device(#[from] HeadlessError),
-    /// The renderer refused an atmosphere or a place.
-    #[error(transparent)]
-    Renderer(#[from] SkyRendererError),
-    /// The solver refused it.
-    #[error(transparent)]
-    Solver(#[from] SkyError),
-    /// A published model refused it.
-    #[error(transparent)]
-    Published(#[from] SceneError),
-    /// The caller cancelled.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-}
 
 /// A renderer of frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -342,7 +279,7 @@ fn row(
         sun_zenith_deg: 90.0 - case.sun_deg,
         altitude_m: case.height_m,
         view_zenith_deg: 90.0 - axes::elevation_deg(pixel.direction),
-        relative_azimuth_deg: axes::azimuth_deg(pixel.direction) - SUN_AZIMUTH_DEG,
+        relative_azimuth_deg: axes::azimuth_deg(pixel.direction) - case::SUN_AZIMUTH_DEG,
         distance_m: pixel.wall_m.filter(|_| is_wall),
         wavelength_nm: None,
     };

@@ -1,7 +1,7 @@
 //! What the solver and each renderer see in pixels.
 
+use super::case::{Case, FramesError};
 use super::pixels::{Pixel, Wall, frames, wall_m};
-use super::{Case, FramesError};
 use airlight::Control;
 use airlight::atmosphere::Atmosphere;
 use airlight::glam::DVec3;
