@@ -158,6 +158,7 @@ fn usual(long: &str) -> Option<&'static str> {
         "moon-phase" => "40",
         "near-plane-m" => "0.1",
         "objects" => "objects.toml",
+        "openjd" => "job.json",
         "output" => "picture.png",
         "ozone-du" => "300",
         "patch-height-m" => "20",

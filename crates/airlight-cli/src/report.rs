@@ -9,6 +9,7 @@ use airlight_image::output::AtomicFile;
 use airlight_image::tone::ToneMapper;
 use airlight_plot::{ContactSheet, Panel, Raster};
 use airlight_render::RenderedImage;
+use airlight_render::openjd::JobTemplate;
 use std::io::Write;
 use std::path::Path;
 use std::time::Duration;
@@ -45,6 +46,18 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), CliError> {
         CliError::failure(format!("cannot write `{}`: {error}", path.display()))
     })?;
     Ok(file.commit()?)
+}
+
+/// Writes a job for a render farm, and says so.
+///
+/// # Errors
+/// [`CliError`] if the file cannot be written.
+pub fn write_job(path: &Path, job: &JobTemplate, quiet: bool) -> Result<(), CliError> {
+    write(path, job.to_json())?;
+    match quiet {
+        true => Ok(()),
+        false => print(&format!("{}: job template\n", path.display())),
+    }
 }
 
 /// Checks that a file can be written, before anything is computed.

@@ -31,7 +31,9 @@ pub use airlight::{Control, Progress};
 pub use error::ImageError;
 pub use frame::{Camera, CubeFace, Fisheye, Frame, Intrinsics, Projection};
 pub use glam;
-pub use input::{DepthMap, DepthOptions, Picture, read_depth, read_picture};
+pub use input::{
+    DepthMap, DepthOptions, Picture, read_depth, read_depth_with, read_picture, read_picture_with,
+};
 pub use notes::Notes;
 pub use output::{PictureFormat, PictureOptions, write_picture};
 pub use rows::RowSource;

@@ -1,6 +1,6 @@
 //! `accuracy`: the report of the errors.
 
-use crate::compute::compute_apart;
+use crate::compute::compute;
 use crate::errors::Failure;
 use airlight_validation::report::{html, json, text};
 use airlight_validation::{Check, Suite, run_with};
@@ -33,12 +33,7 @@ pub fn accuracy(
             .collect::<Result<Vec<Suite>, _>>()?,
         None => Suite::USUAL.to_vec(),
     };
-    compute_apart(py, threads, move |control| {
-        let checks = run_with(&suites, control);
-        checks
-            .map(AccuracyReport)
-            .map_err(|error| Failure::invalid(error.to_string()))
-    })
+    compute(py, threads, |control| run_with(&suites, control)).map(AccuracyReport)
 }
 
 /// Errors of the solvers: ``airlight.accuracy`` makes it. A notebook shows it with plots.

@@ -3,6 +3,7 @@
 use crate::compute::compute;
 use crate::errors::Failure;
 use airlight_render::batch::{BatchPlan, BatchSettings};
+use airlight_render::openjd::JobTemplate;
 use airlight_render::overlay::OverlayScene;
 use airlight_render::scene_file;
 use pyo3::exceptions::PyOSError;
@@ -72,24 +73,18 @@ pub fn fog_batch(
     threads: Option<NonZeroU32>,
 ) -> PyResult<(usize, usize, Vec<String>)> {
     let settings = BatchSettings {
-        vary: parsed(&vary)?,
-        each: parsed(&each)?,
-        variants,
-        seed,
         shard: shard
             .map(|shard| shard.parse().map_err(Failure::Invalid))
             .transpose()?,
         manifest,
         overwrite,
         threads,
-        ..BatchSettings::default()
+        ..draws(&vary, &each, variants, seed)?
     };
-    let mut scene = OverlayScene::from_toml(toml).map_err(Failure::from)?;
     let (made, existing, failures, stopped) =
         compute(py, threads.map(|n| n.get() as usize), |control| {
-            scene_file::inline_files(&mut scene.scene, Path::new(""))?;
-            let plan = BatchPlan::new(scene, settings)?;
-            let batch = plan.start()?;
+            let plan = plan(toml, settings)?;
+            let batch = plan.start_with(control)?;
             let existing = plan.pictures().count() - batch.missing();
             let report = batch.run(control)?;
             let stopped = report.stopped.map(|error| error.to_string());
@@ -99,6 +94,47 @@ pub fn fog_batch(
         Some(sentence) => Err(PyOSError::new_err(sentence)),
         None => Ok((made, existing, failures)),
     }
+}
+
+/// The settings that differ between pictures.
+fn draws(
+    vary: &[String],
+    each: &[String],
+    variants: Option<NonZeroU32>,
+    seed: u64,
+) -> Result<BatchSettings, Failure> {
+    Ok(BatchSettings {
+        vary: parsed(vary)?,
+        each: parsed(each)?,
+        variants,
+        seed,
+        ..BatchSettings::default()
+    })
+}
+
+/// The pictures of a scene file with a table ``[overlay]``.
+fn plan(toml: &str, settings: BatchSettings) -> Result<BatchPlan, Failure> {
+    let mut scene = OverlayScene::from_toml(toml)?;
+    scene_file::inline_files(&mut scene.scene, Path::new(""))?;
+    Ok(BatchPlan::new(scene, settings)?)
+}
+
+/// The JSON of ``airlight.openjd.fog_job``.
+#[pyfunction]
+#[pyo3(
+    signature = (toml, tasks=None, *, vary=Vec::new(), each=Vec::new(), variants=None, seed=0),
+    text_signature = "(toml, tasks=None, *, vary=(), each=(), variants=None, seed=0)"
+)]
+pub fn job_of_batch(
+    toml: &str,
+    tasks: Option<u32>,
+    vary: Vec<String>,
+    each: Vec<String>,
+    variants: Option<NonZeroU32>,
+    seed: u64,
+) -> Result<String, Failure> {
+    let plan = plan(toml, draws(&vary, &each, variants, seed)?)?;
+    Ok(JobTemplate::of_batch(&plan, tasks)?.to_json())
 }
 
 /// Settings from their texts.

@@ -45,14 +45,6 @@ fn pool(threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     Ok(pool)
 }
 
-/// Lets later computations start threads of their own, where those of a pool are still busy.
-fn forget_pool(threads: Option<usize>) {
-    let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(pools) = pools.as_mut() {
-        pools.remove(&(std::process::id(), threads.unwrap_or(0)));
-    }
-}
-
 /// Runs a computation on a number of threads (`None`: one per processor) while other threads of the interpreter run. On a signal
 /// whose handler raises, as that of Ctrl-C does, the computation is cancelled and the exception is raised.
 pub fn compute<T, E>(
@@ -86,41 +78,6 @@ where
         (Some(exception), _) => Err(exception),
         (None, Ok(result)) => result.map_err(|error| error.into().into()),
         (None, Err(panic)) => resume_unwind(panic),
-    }
-}
-
-/// As [`compute`], for computations with parts that take seconds between two looks at their control. After a signal such a part ends
-/// by itself, in the background.
-pub fn compute_apart<T, E>(
-    py: Python<'_>,
-    threads: Option<usize>,
-    work: impl FnOnce(Control<'_>) -> Result<T, E> + Send + 'static,
-) -> PyResult<T>
-where
-    T: Send + 'static,
-    E: Into<Failure> + Send + 'static,
-{
-    let pool = pool(threads)?;
-    let cancel = Arc::new(AtomicBool::new(false));
-    let cancelled = cancel.clone();
-    let waited = py.detach(move || {
-        let (finished, wait) = mpsc::channel::<()>();
-        let worker = std::thread::spawn(move || {
-            let result = pool.install(|| work(Control::cancelled_by(&cancelled)));
-            drop(finished);
-            result
-        });
-        match wait_or_raise(&wait) {
-            Some(exception) => {
-                cancel.store(true, Ordering::Relaxed);
-                Err(exception)
-            }
-            None => Ok(worker.join()),
-        }
-    });
-    match waited.inspect_err(|_| forget_pool(threads))? {
-        Ok(result) => result.map_err(|error| error.into().into()),
-        Err(panic) => resume_unwind(panic),
     }
 }
 

@@ -11,6 +11,7 @@ use airlight::{Cancelled, UnknownName};
 use airlight_image::ImageError;
 use airlight_render::RenderError;
 use airlight_render::batch::BatchError;
+use airlight_validation::RunError;
 use pyo3::PyErr;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError, PyValueError};
 
@@ -76,6 +77,15 @@ impl From<ImageError> for Failure {
     }
 }
 
+impl From<RunError> for Failure {
+    fn from(error: RunError) -> Self {
+        match error {
+            RunError::Cancelled(_) => Self::Cancelled,
+            error => Self::Invalid(error.to_string()),
+        }
+    }
+}
+
 impl From<BatchError> for Failure {
     fn from(error: BatchError) -> Self {
         match (error.is_cancelled(), error.is_refusal()) {
@@ -95,14 +105,21 @@ impl From<SceneError> for Failure {
     }
 }
 
-impl From<SkyError> for Failure {
-    fn from(error: SkyError) -> Self {
-        match error {
-            SkyError::Cancelled(_) => Self::Cancelled,
-            _ => Self::Invalid(error.to_string()),
+/// Errors about an argument, unless the caller cancelled.
+macro_rules! cancelled_or_invalid {
+    ($($error:ident),+) => {$(
+        impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                match error {
+                    $error::Cancelled(_) => Self::Cancelled,
+                    _ => Self::Invalid(error.to_string()),
+                }
+            }
         }
-    }
+    )+};
 }
+
+cancelled_or_invalid!(FogError, MieError, SkyError);
 
 /// Errors that are always about an argument.
 macro_rules! invalid {
@@ -118,9 +135,7 @@ macro_rules! invalid {
 invalid!(
     ConfigError,
     EphemerisError,
-    FogError,
     GridError,
-    MieError,
     MomentError,
     UnknownName
 );

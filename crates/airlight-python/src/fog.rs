@@ -109,17 +109,17 @@ impl Pixels<'_> {
     }
 
     /// Linear light in the type of these values.
-    fn encoded(&self, linear: Vec<f32>) -> Values<'static> {
+    fn encoded(&self, linear: Vec<f32>, control: Control<'_>) -> Result<Values<'static>, Failure> {
         let tone = ToneMapper::as_displayed();
-        match &self.values {
-            Values::U8(_) => Values::U8(displayed_u8(&linear, self.size, &tone).into()),
+        Ok(match &self.values {
+            Values::U8(_) => Values::U8(displayed_u8(&linear, self.size, &tone, control)?.into()),
             Values::U16(_) => {
                 let mut values = vec![0; linear.len()];
                 tone.row_to_u16(&linear, &mut values);
                 Values::U16(values.into())
             }
             Values::F32(_) => Values::F32(linear.into()),
-        }
+        })
     }
 }
 
@@ -206,8 +206,7 @@ impl Fog {
         let depth = DepthMap::from_numbers(depth.size, depth.values, SampleBits::Float, &options)?;
         let image = OverlayImage::new(&scene.overlay, picture, depth)?;
         let sky = self.sky_light(control)?;
-        control.check()?;
-        let prepared = PreparedOverlay::new(&scene, &image, sky.as_deref())?;
+        let prepared = PreparedOverlay::new_with(&scene, &image, sky.as_deref(), control)?;
         let rows = prepared.overlay(&image)?;
         Ok(draw_rows(&rows, image.picture.size, control)?)
     }
@@ -365,7 +364,7 @@ impl Fog {
         let pixels = picture.pixels()?;
         let values = compute(py, threads, |control| {
             let linear = self.draw(pixels.picture()?, depth, false, control)?;
-            Ok::<_, Failure>(pixels.encoded(linear))
+            pixels.encoded(linear, control)
         })?;
         let size = pixels.size;
         Ok(match values {

@@ -36,6 +36,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<accuracy::AccuracyReport>()?;
     module.add_function(wrap_pyfunction!(accuracy::accuracy, module)?)?;
     module.add_function(wrap_pyfunction!(batch::fog_batch, module)?)?;
+    module.add_function(wrap_pyfunction!(batch::job_of_batch, module)?)?;
     module.add_function(wrap_pyfunction!(mie::mie_phase, module)?)?;
     module.add_function(wrap_pyfunction!(mie::mie_sphere, module)?)?;
     module.add_function(wrap_pyfunction!(openjd::job_of_command, module)?)?;

@@ -141,10 +141,7 @@ impl Particles {
     ) -> PyResult<Bound<'py, PyDict>> {
         let nm = arrays::numbers(wavelengths_nm);
         let found = compute(py, threads, |control| {
-            let bulk = |&nm: &f64| {
-                control.check()?;
-                self.0.bulk(nm).map_err(Failure::from)
-            };
+            let bulk = |&nm: &f64| self.0.bulk_with(nm, control).map_err(Failure::from);
             nm.iter().map(bulk).collect::<Result<Vec<_>, Failure>>()
         })?;
         let table = PyDict::new(py);
@@ -182,7 +179,9 @@ impl Particles {
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let angles = arrays::numbers(angle_deg).into_iter();
         let cosines: Vec<f64> = angles.map(|degrees| degrees.to_radians().cos()).collect();
-        let found = compute(py, threads, |_| self.0.matrices(wavelength_nm, &cosines))?;
+        let found = compute(py, threads, |control| {
+            self.0.matrices_with(wavelength_nm, &cosines, control)
+        })?;
         let elements = found.iter().flat_map(|m| [m.f11, m.f12, m.f33, m.f34]);
         arrays::matrix(py, elements.collect(), 4)
     }

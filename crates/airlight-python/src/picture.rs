@@ -66,8 +66,8 @@ impl Picture {
     fn displayed<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<u8>>> {
         let pixels = self.pixels(py);
         let rgb = arrays::in_order(&pixels);
-        let values = compute(py, None, |_| {
-            Ok::<_, Failure>(displayed_u8(&rgb, self.size, &self.tone))
+        let values = compute(py, None, |control| {
+            displayed_u8(&rgb, self.size, &self.tone, control)
         })?;
         arrays::picture(py, values, self.size, 3)
     }
@@ -75,11 +75,10 @@ impl Picture {
     /// The displayed picture as the bytes of a PNG file, which a notebook shows.
     pub fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let pixels = self.pixels(py);
-        let png = encode_png(
-            arrays::in_order(&pixels).into_owned(),
-            self.size,
-            &self.tone,
-        )?;
+        let rgb = arrays::in_order(&pixels).into_owned();
+        let png = compute(py, None, |control| {
+            encode_png(rgb, self.size, &self.tone, control)
+        })?;
         Ok(PyBytes::new(py, &png))
     }
 
@@ -95,20 +94,34 @@ impl Picture {
 }
 
 /// Display values of 8 bits, as they are in a PNG file.
-pub fn displayed_u8(rgb: &[f32], size: Size, tone: &ToneMapper) -> Vec<u8> {
+pub fn displayed_u8(
+    rgb: &[f32],
+    size: Size,
+    tone: &ToneMapper,
+    control: Control<'_>,
+) -> Result<Vec<u8>, Failure> {
     let row = 3 * size.width() as usize;
     let mut out = vec![0; rgb.len()];
     let rows = rgb.par_chunks_exact(row).zip(out.par_chunks_exact_mut(row));
     rows.zip(0..size.height())
-        .for_each(|((linear, out), y)| tone.row_to_u8(y, linear, out));
-    out
+        .try_for_each(|((linear, out), y)| {
+            control.check()?;
+            tone.row_to_u8(y, linear, out);
+            Ok::<_, Failure>(())
+        })?;
+    Ok(out)
 }
 
 /// The bytes of a PNG file.
-pub fn encode_png(rgb: Vec<f32>, size: Size, tone: &ToneMapper) -> Result<Vec<u8>, Failure> {
+pub fn encode_png(
+    rgb: Vec<f32>,
+    size: Size,
+    tone: &ToneMapper,
+    control: Control<'_>,
+) -> Result<Vec<u8>, Failure> {
     let rows = StoredRows::new(size.width(), 3, rgb)?;
     let (options, metadata) = (png::PngOptions::default(), Metadata::default());
-    let (mut bytes, control) = (Vec::new(), Control::default());
+    let mut bytes = Vec::new();
     png::encode(&mut bytes, size, &rows, tone, &options, &metadata, control)?;
     Ok(bytes)
 }
@@ -133,7 +146,9 @@ pub fn read_picture<'py>(
     path: PathBuf,
     layer: Option<&str>,
 ) -> PyResult<Bound<'py, PyArray3<f32>>> {
-    let picture = compute(py, None, |_| airlight_image::read_picture(&path, layer))?;
+    let picture = compute(py, None, |control| {
+        airlight_image::read_picture_with(&path, layer, control)
+    })?;
     arrays::picture(py, picture.rgb, picture.size, 3)
 }
 
@@ -190,6 +205,8 @@ pub fn read_depth<'py>(
         ..OverlaySpec::default()
     };
     let options: DepthOptions = spec.depth_options().map_err(Failure::from)?;
-    let depth = compute(py, None, |_| airlight_image::read_depth(&path, &options))?;
+    let depth = compute(py, None, |control| {
+        airlight_image::read_depth_with(&path, &options, control)
+    })?;
     arrays::matrix(py, depth.metres, depth.size.width() as usize)
 }

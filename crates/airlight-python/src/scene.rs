@@ -1,7 +1,7 @@
 //! `Scene` and `RadianceView`: every solver and published model.
 
 use crate::arrays::{self, Vectors};
-use crate::compute::{compute, compute_apart};
+use crate::compute::compute;
 use crate::errors::Failure;
 use crate::picture::Picture;
 use airlight::models::registry;
@@ -160,17 +160,17 @@ impl Scene {
             "spectral" => Channels::Spectral,
             space => Channels::Rgb(space.parse().map_err(Failure::from)?),
         };
-        let scene = self.0.clone();
-        let view = compute_apart(py, threads, move |control| {
-            let scene = scene.resolve()?;
+        let view = compute(py, threads, |control| {
+            let scene = self.0.resolve()?;
             let sun = scene.sun.at_start()?;
             let suns = SunCoverage::near(sun.elevation_deg, scene.observer_altitude_m);
             let prepared = registry::prepare(&scene, suns, control)?;
-            control.check()?;
             let (altitude_m, state) = (scene.observer_altitude_m, sun.state());
             Ok::<_, Failure>(match scene.night(&sun) {
-                Some(night) => prepared.night_view(altitude_m, &state, &night, channels)?,
-                None => prepared.view(altitude_m, &state, channels)?,
+                Some(night) => {
+                    prepared.night_view_with(altitude_m, &state, &night, channels, control)?
+                }
+                None => prepared.view_with(altitude_m, &state, channels, control)?,
             })
         })?;
         let solver = self.0.solver.name.as_deref();
@@ -246,9 +246,9 @@ impl Scene {
             elevation_deg,
             distance_m,
         });
-        let (scene, rays) = (self.0.clone(), rays.collect());
-        compute_apart(py, threads, move |control| {
-            Probe::new(&scene, rays)?.answer(control)
+        let rays = rays.collect();
+        compute(py, threads, |control| {
+            Probe::new(&self.0, rays)?.answer(control)
         })
         .map(|answer| answer.to_csv())
     }
@@ -261,7 +261,7 @@ impl Scene {
             let renderer = Renderer::new(&self.0)?;
             let frame = renderer.layout().overview(WIDTH)?;
             let prepared = renderer.prepare(renderer.suns_near(&renderer.sun(None)?), control)?;
-            let drawn = renderer.frame(prepared.as_ref(), None)?;
+            let drawn = renderer.frame_with(prepared.as_ref(), None, control)?;
             drawn.image(&frame, control)
         })?;
         Picture::new(py, image)?._repr_png_(py)
@@ -321,11 +321,9 @@ impl RadianceView {
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let directions = arrays::directions(directions);
         let count = self.view.channel_count();
-        let view = self.view.clone();
-        let values = compute_apart(py, threads, move |control| {
+        let values = compute(py, threads, |control| {
             arrays::for_directions(&directions, count, control, |directions, out| {
-                view.radiance(directions, out);
-                Ok(())
+                Ok(self.view.radiance_with(directions, out, control)?)
             })
         })?;
         arrays::matrix(py, values, count)
@@ -352,17 +350,16 @@ impl RadianceView {
         threads: Option<usize>,
     ) -> PyResult<[Bound<'py, PyArray2<f64>>; 2]> {
         let directions = arrays::directions(directions);
-        let (view, solver) = (self.view.clone(), self.solver.clone());
         let count = self.view.grid().map_or(0, |grid| grid.len());
-        let values = compute_apart(py, threads, move |control| {
-            let sampler = view.sampler().ok_or_else(|| {
-                Failure::invalid(format!(
-                    "estimate: expected a scene with solver.name = \"monte-carlo\", got \"{solver}\", which has no noise; try radiance"
-                ))
-            })?;
+        let sampler = self.view.sampler().ok_or_else(|| {
+            Failure::invalid(format!(
+                "estimate: expected a scene with solver.name = \"monte-carlo\", got \"{}\", which has no noise; try radiance",
+                self.solver
+            ))
+        })?;
+        let values = compute(py, threads, |control| {
             arrays::for_each_direction(&directions, 2 * count, control, |direction, out| {
-                control.check()?;
-                let found = sampler.estimate(direction, None);
+                let found = sampler.estimate_with(direction, None, control)?;
                 let (mean, error) = out.split_at_mut(count);
                 mean.copy_from_slice(&found.mean);
                 error.copy_from_slice(&found.standard_error);
@@ -442,12 +439,10 @@ impl RadianceView {
         }
         let directions = arrays::directions(directions);
         let count = self.view.channel_count();
-        let view = self.view.clone();
-        let values = compute_apart(py, threads, move |control| {
+        let values = compute(py, threads, |control| {
             arrays::for_each_direction(&directions, 2 * count, control, |direction, out| {
-                let (transmittance, path_radiance) = out.split_at_mut(count);
-                view.path(direction, distance_m, transmittance, path_radiance);
-                Ok(())
+                let out = out.split_at_mut(count);
+                Ok(self.view.path_with(direction, distance_m, out, control)?)
             })
         })?;
         arrays::matrix_pair(py, &values, count)

@@ -2,7 +2,7 @@
 
 use crate::arrays::{self, Numbers, Vectors};
 use crate::atmosphere::{AirArgument, Atmosphere};
-use crate::compute::{compute, compute_apart};
+use crate::compute::compute;
 use crate::errors::Failure;
 use crate::picture::encode_png;
 use airlight::Control;
@@ -113,7 +113,7 @@ impl Sky {
         };
         let settings = solver.sky_settings(suns);
         let (air, grid) = (atmosphere.or_preset(), wavelengths.grid()?);
-        compute_apart(py, threads, move |control| {
+        compute(py, threads, |control| {
             let air = air.or_else(|preset| atmosphere::preset(&preset))?;
             let sky = sky::Sky::prepare_with(&air, &grid, &settings, control)?;
             Ok::<_, Failure>(Self(sky))
@@ -185,9 +185,8 @@ impl Sky {
             direction: axes::direction(sun_azimuth_deg, sun_elevation_deg),
             distance_ratio,
         };
-        let sky = self.0.clone();
-        let view = compute_apart(py, threads, move |control| {
-            sky.view_with(altitude_m, sun, control)
+        let view = compute(py, threads, |control| {
+            self.0.view_with(altitude_m, sun, control)
         })?;
         Ok(View {
             view,
@@ -249,6 +248,15 @@ impl View {
 
     fn grid(&self) -> &WavelengthGrid {
         self.view.sky().grid()
+    }
+
+    /// The view with its tables at the wavelengths of the sky, computed once.
+    fn spectral_view(&self, control: Control<'_>) -> Result<&Arc<dyn RadianceView>, Failure> {
+        if let Some(view) = self.spectral.get() {
+            return Ok(view);
+        }
+        let view = self.view.radiance_view_with(Channels::Spectral, control)?;
+        Ok(self.spectral.get_or_init(|| view))
     }
 
     /// Linear red, green and blue of a picture, row by row, cd/m^2.
@@ -427,9 +435,7 @@ impl View {
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let (normals, count) = (arrays::directions(normals), self.grid().len());
         let values = compute(py, threads, |control| {
-            let view = self
-                .spectral
-                .get_or_init(|| self.view.radiance_view(Channels::Spectral));
+            let view = self.spectral_view(control)?;
             arrays::for_directions(&normals, count, control, |normals, out| {
                 view.irradiance(normals, out);
                 Ok(())
@@ -543,7 +549,9 @@ impl View {
             Frame::new(projection, height.saturating_mul(2), height).map_err(Failure::from)?;
         let layer = if sun_disc { Layer::All } else { Layer::Sky };
         let values = compute(py, threads, |control| {
-            let view = self.view.radiance_view(Channels::Rgb(space));
+            let view = self
+                .view
+                .radiance_view_with(Channels::Rgb(space), control)?;
             self.draw(&frame, &view, space, layer, control)
         })?;
         arrays::picture(py, values, frame.size(), 3)
@@ -580,7 +588,9 @@ impl View {
         let space = RgbSpace::Srgb;
         let frame = Frame::equirectangular(ROWS).map_err(Failure::from)?;
         let bytes = compute(py, None, |control| {
-            let view = self.view.radiance_view(Channels::Rgb(space));
+            let view = self
+                .view
+                .radiance_view_with(Channels::Rgb(space), control)?;
             let draw = |layer| self.draw(&frame, &view, space, layer, control);
             let sky = draw(Layer::Sky)?;
             let metered = MeteredPicture::of_frame(
@@ -593,7 +603,7 @@ impl View {
             let output = OutputSpec::default();
             let exposure = ExposureSettings::of(&output).metered(&metered)?;
             let tone = ToneMapper::new(exposure.factor() as f32, ToneCurve::default())?;
-            encode_png(draw(Layer::All)?, frame.size(), &tone)
+            encode_png(draw(Layer::All)?, frame.size(), &tone, control)
         })?;
         Ok(PyBytes::new(py, &bytes))
     }

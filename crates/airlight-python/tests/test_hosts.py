@@ -66,6 +66,19 @@ def test_jobs_that_cannot_be_split_are_refused():
         openjd.job("job", ["airlight", "fog"], 0)
 
 
+def test_jobs_of_pictures_have_their_folders_as_parameters(pictures, tmp_path):
+    job = openjd.fog_job(pictures(tmp_path / "out"), each=["droplets=fine,radiation"])
+    assert [parameter["name"] for parameter in job["parameterDefinitions"]] == ["PicturesDir", "DepthDir", "OutputDir", "Program"]
+    step = job["steps"][0]
+    assert step["parameterSpace"]["taskParameterDefinitions"][0]["range"] == "1-10"
+    words = "fog --scene {{Task.File.Scene}} {{Param.PicturesDir}}/ --depth {{Param.DepthDir}}/ --output {{Param.OutputDir}}/ "
+    words += "--each=droplets=fine,radiation --shard {{Task.Param.Shard}}/10"
+    assert step["script"]["actions"]["onRun"]["args"] == words.split()
+    assert str(tmp_path) not in step["script"]["embeddedFiles"][0]["data"]
+    with pytest.raises(ValueError, match="1 to 10"):
+        openjd.fog_job(pictures(tmp_path / "out"), 11)
+
+
 def run_job(path, *options):
     """Run a job by the command line of Open Job Description."""
     runner = pathlib.Path(sys.executable).with_name("openjd")
@@ -87,6 +100,21 @@ def test_openjd_runs_a_job_in_parts(program, pictures, tmp_path):
     openjd.write(tmp_path / "job.json", openjd.job("fog", command, 4))
     run_job(tmp_path / "job.json")
     assert files(tmp_path / "farm") == files(tmp_path / "whole")
+
+
+@pytest.mark.slow
+def test_openjd_adds_fog_in_parts(program, pictures, tmp_path):
+    settings = {"vary": ["visibility=50..500"], "seed": 3}
+    airlight.fog_batch(pictures(tmp_path / "whole", ""), **settings)
+    # Of the program, whose folders are options, and of Python, whose folders are parameters of the job.
+    words = ["fog", tmp_path / "rgb", "--depth", tmp_path / "depth/*.npy", "-o", f"{tmp_path}/program/"]
+    program(*words, "--vary", "visibility=50..500", "--seed", 3, "--openjd", tmp_path / "program.json", "--tasks", 4)
+    openjd.write(tmp_path / "python.json", openjd.fog_job(pictures(tmp_path / "python", ""), 3, **settings))
+    for name in ("program", "python"):
+        folders = {"PicturesDir": "rgb", "DepthDir": "depth", "OutputDir": name}
+        options = [f"-p{parameter}={tmp_path / folder}" for parameter, folder in folders.items()]
+        run_job(tmp_path / f"{name}.json", *options)
+        assert files(tmp_path / name) == files(tmp_path / "whole")
 
 
 @pytest.mark.slow

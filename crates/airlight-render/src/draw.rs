@@ -32,7 +32,7 @@ impl Renderer {
         let suns = self.suns_near(&self.sun(None)?);
         let prepared = solutions.prepare(self, suns, control)?;
         let image = self
-            .frame(prepared.as_ref(), None)?
+            .frame_with(prepared.as_ref(), None, control)?
             .image(&frame, control)?;
         Ok(RenderedImage {
             time: begun.elapsed(),
@@ -51,9 +51,9 @@ impl Renderer {
             if let Some(ready) = self.prepare_sequence(&sequence, run.missing(), control)? {
                 for (index, step) in run.missing().iter().enumerate() {
                     control.check()?;
-                    let frame = ready
-                        .renderer
-                        .frame(ready.solution.as_ref(), Some(step.time))?;
+                    let renderer = &ready.renderer;
+                    let frame =
+                        renderer.frame_with(ready.solution.as_ref(), Some(step.time), control)?;
                     written.extend(run.write(index, &frame, control)?.files);
                 }
             }
@@ -62,7 +62,7 @@ impl Renderer {
         }
         let path = self.output_path()?;
         let prepared = self.prepare(self.suns_near(&self.sun(None)?), control)?;
-        let frame = self.frame(prepared.as_ref(), None)?;
+        let frame = self.frame_with(prepared.as_ref(), None, control)?;
         Ok(frame.write(path, control)?.files)
     }
 }

@@ -83,7 +83,20 @@ impl Renderer {
         prepared: &dyn PreparedModel,
         time: Option<Moment>,
     ) -> Result<PreparedFrame<'r>, RenderError> {
-        PreparedFrame::new(self, prepared, time)
+        self.frame_with(prepared, time, Control::default())
+    }
+
+    /// As [`Renderer::frame`], with cancellation.
+    ///
+    /// # Errors
+    /// As [`Renderer::frame`], and if the caller cancelled.
+    pub fn frame_with<'r>(
+        &'r self,
+        prepared: &dyn PreparedModel,
+        time: Option<Moment>,
+        control: Control<'_>,
+    ) -> Result<PreparedFrame<'r>, RenderError> {
+        PreparedFrame::new(self, prepared, time, control)
     }
 }
 
@@ -92,6 +105,7 @@ impl<'r> PreparedFrame<'r> {
         renderer: &'r Renderer,
         prepared: &dyn PreparedModel,
         time: Option<Moment>,
+        control: Control<'_>,
     ) -> Result<Self, RenderError> {
         let scene = renderer.resolved();
         let sun = renderer.sun(time)?;
@@ -114,8 +128,8 @@ impl<'r> PreparedFrame<'r> {
         });
         let prepared = moved.as_deref().unwrap_or(prepared);
         let view_at = |altitude_m: f64, channels: Channels| match &night {
-            Some(night) => prepared.night_view(altitude_m, &state, night, channels),
-            None => prepared.view(altitude_m, &state, channels),
+            Some(night) => prepared.night_view_with(altitude_m, &state, night, channels, control),
+            None => prepared.view_with(altitude_m, &state, channels, control),
         };
         let view = view_at(scene.observer_altitude_m, channels.of_views())?;
         let preview = match view.sampler() {

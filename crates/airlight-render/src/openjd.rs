@@ -1,5 +1,6 @@
 //! [`JobTemplate`]: jobs of Open Job Description, which render farms run.
 
+use crate::batch::BatchPlan;
 use crate::error::RenderError;
 use crate::layout::PictureFile;
 use crate::renderer::Renderer;
@@ -41,14 +42,7 @@ impl JobTemplate {
         {
             scene.sun.time = Some(start.to_string());
         }
-        let toml = plain("the scene", scene.to_toml()?)?;
-        if toml.chars().count() > LARGEST_FILE {
-            return Err(RenderError::setting(format!(
-                "expected a scene of at most {LARGEST_FILE} characters in a job template, got {}; try fewer objects, or a shorter table \
-                 of the atmosphere",
-                toml.chars().count()
-            )));
-        }
+        let toml = embedded("the scene", scene.to_toml()?)?;
         let sequence = renderer.sequence()?;
         let most = match &sequence {
             Some(sequence) => sequence.steps().len() as u64,
@@ -59,31 +53,85 @@ impl JobTemplate {
         let output = in_folder(&plain("the name of the picture", name)?);
         let arguments = ["sky", "--scene", "{{Task.File.Scene}}", "-o", &output].map(str::to_owned);
         let mut draw = step("sky", "{{Param.Program}}", &arguments, tasks);
-        draw["script"]["embeddedFiles"] =
-            json!([{"name": "Scene", "filename": "scene.toml", "type": "TEXT", "data": toml}]);
+        draw["script"]["embeddedFiles"] = toml;
         let steps = match sequence {
             Some(_) => vec![draw],
             None => vec![draw, join(renderer, path, tasks)?],
         };
-        let mut parameters = json!([
-            {
-                "name": "OutputDir",
-                "type": "PATH",
-                "objectType": "DIRECTORY",
-                "dataFlow": "OUT",
-                "description": "Folder of the pictures.",
-            },
-            {
-                "name": "Program",
-                "type": "STRING",
-                "default": "airlight",
-                "description": "The program airlight, of version 0.1 or later.",
-            },
-        ]);
-        if let Some(folder) = folder_of_template(path) {
-            parameters[0]["default"] = json!(folder);
-        }
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let parameters = json!([OUTPUT.definition(folder), program_parameter()]);
         Ok(Self(template(&file_name(path), Some(parameters), &steps)))
+    }
+
+    /// A job that adds fog to the pictures of a batch, a task for each shard. The description is a part of the template. Parameters of
+    /// the job are the folders of the pictures, of their depth maps (if they are files of their own) and of the outputs, and the name
+    /// of the program; folders that are relative are the defaults, from the folder of the template. Without a number of
+    /// tasks there are 16, or fewer for few inputs.
+    ///
+    /// # Errors
+    /// [`RenderError`] for a batch of one input or of one shard, for a manifest at a path of its own or pictures to replace, for more
+    /// tasks than there are inputs, and for a description that is too large for a template.
+    pub fn of_batch(plan: &BatchPlan, tasks: Option<u32>) -> Result<Self, RenderError> {
+        let (scene, settings) = (plan.scene(), plan.settings());
+        let colour = &scene.overlay.colour;
+        let inputs = plan.found().inputs.len() as u64;
+        if inputs < 2 {
+            return Err(RenderError::setting(format!(
+                "a job: expected several pictures, got `{}`; try a folder",
+                colour.display()
+            )));
+        }
+        if settings.shard.is_some() || settings.manifest.is_some() || settings.overwrite {
+            return Err(RenderError::setting(
+                "a job: expected a batch without a shard, a manifest and pictures to replace, which are those of each task; try leaving them out",
+            ));
+        }
+        let usual = u64::from(USUAL_TASKS).min(inputs) as u32;
+        let tasks = checked_tasks(tasks.unwrap_or(usual), inputs)?;
+        let mut description = scene.clone();
+        // Options of the command take their place.
+        description.overlay.colour = PathBuf::from(".");
+        (description.overlay.depth, description.scene.output.file) = (None, None);
+        let toml = embedded("the description", description.to_toml()?)?;
+        let folders = [
+            (&PICTURES, Some(colour.as_path())),
+            (&DEPTH, scene.overlay.depth.as_deref()),
+            (&OUTPUT, Some(scene.output()?)),
+        ];
+        let mut arguments = ["fog", "--scene", "{{Task.File.Scene}}"]
+            .map(str::to_owned)
+            .to_vec();
+        let mut parameters = Vec::new();
+        for (parameter, path) in folders {
+            let Some(path) = path else { continue };
+            let (folder, pattern) = folder_and_pattern(path);
+            let pattern = plain("the name of a file", pattern.to_string_lossy().into_owned())?;
+            arguments.extend(parameter.option.map(str::to_owned));
+            arguments.push(format!("{{{{Param.{}}}}}/{pattern}", parameter.name));
+            parameters.push(parameter.definition(&folder));
+        }
+        parameters.push(program_parameter());
+        for (option, values) in [
+            ("--vary", texts(&settings.vary)),
+            ("--each", texts(&settings.each)),
+            ("--variants", texts(&settings.variants)),
+            ("--patch-interval-s", texts(&settings.patch_interval_s)),
+            ("--jobs", texts(&settings.threads)),
+        ] {
+            arguments.extend(values.into_iter().map(|value| format!("{option}={value}")));
+        }
+        if !settings.vary.is_empty() {
+            arguments.push(format!("--seed={}", settings.seed));
+        }
+        let switches = [
+            ("--skip-unpaired", settings.skip_unpaired),
+            ("--fail-fast", settings.fail_fast),
+        ];
+        let given = switches.into_iter().filter(|(_, is_given)| *is_given);
+        arguments.extend(given.map(|(option, _)| option.to_owned()));
+        let mut step = step("fog", "{{Param.Program}}", &arguments, tasks);
+        step["script"]["embeddedFiles"] = toml;
+        Ok(Self(template("fog", Some(json!(parameters)), &[step])))
     }
 
     /// A job that runs a command of the program in parts: the words of `airlight fog` or `airlight sky` with options. Paths are those
@@ -127,9 +175,100 @@ impl JobTemplate {
     }
 }
 
-/// The folder of a picture as the default of a parameter, which must be in the folder of the template; `None` elsewhere.
-fn folder_of_template(picture: &Path) -> Option<String> {
-    let folder = picture.parent().unwrap_or(Path::new(""));
+/// A folder that is a parameter of a job.
+struct FolderParameter {
+    name: &'static str,
+    /// Option of the command that the path follows.
+    option: Option<&'static str>,
+    data_flow: &'static str,
+    description: &'static str,
+}
+
+const PICTURES: FolderParameter = FolderParameter {
+    name: "PicturesDir",
+    option: None,
+    data_flow: "IN",
+    description: "Folder of the pictures to which fog is added.",
+};
+
+const DEPTH: FolderParameter = FolderParameter {
+    name: "DepthDir",
+    option: Some("--depth"),
+    data_flow: "IN",
+    description: "Folder of the depth maps.",
+};
+
+const OUTPUT: FolderParameter = FolderParameter {
+    name: "OutputDir",
+    option: Some("--output"),
+    data_flow: "OUT",
+    description: "Folder of the pictures that are written.",
+};
+
+impl FolderParameter {
+    fn definition(&self, folder: &Path) -> Value {
+        let mut definition = json!({
+            "name": self.name,
+            "type": "PATH",
+            "objectType": "DIRECTORY",
+            "dataFlow": self.data_flow,
+            "description": self.description,
+        });
+        if let Some(folder) = folder_of_template(folder) {
+            definition["default"] = json!(folder);
+        }
+        definition
+    }
+}
+
+/// The parameter for the name of the program.
+fn program_parameter() -> Value {
+    json!({
+        "name": "Program",
+        "type": "STRING",
+        "default": "airlight",
+        "description": "The program airlight, of version 0.1 or later.",
+    })
+}
+
+/// The folder of a path of a batch, and the rest, which is a file or has wildcards or placeholders; nothing for a folder.
+fn folder_and_pattern(path: &Path) -> (PathBuf, PathBuf) {
+    if let (true, Some(name), Some(folder)) = (path.is_file(), path.file_name(), path.parent()) {
+        return (folder.to_owned(), PathBuf::from(name));
+    }
+    let is_fixed = |part: &Component<'_>| {
+        let name = part.as_os_str().to_string_lossy();
+        !name.contains(['*', '{'])
+    };
+    let folder: PathBuf = path.components().take_while(is_fixed).collect();
+    let pattern = path.components().skip_while(is_fixed).collect();
+    (folder, pattern)
+}
+
+/// Values as texts.
+fn texts<'a, T: ToString + 'a>(values: impl IntoIterator<Item = &'a T>) -> Vec<String> {
+    values.into_iter().map(T::to_string).collect()
+}
+
+/// A scene as a file of a step.
+///
+/// # Errors
+/// [`RenderError`] for a scene that is too large.
+fn embedded(what: &str, toml: String) -> Result<Value, RenderError> {
+    let toml = plain(what, toml)?;
+    match toml.chars().count() {
+        0..=LARGEST_FILE => {
+            Ok(json!([{"name": "Scene", "filename": "scene.toml", "type": "TEXT", "data": toml}]))
+        }
+        count => Err(RenderError::setting(format!(
+            "{what}: expected at most {LARGEST_FILE} characters in a job template, got {count}; try fewer objects, or a shorter table \
+             of the atmosphere"
+        ))),
+    }
+}
+
+/// A folder as the default of a parameter, which must be in the folder of the template; `None` elsewhere.
+fn folder_of_template(folder: &Path) -> Option<String> {
     let is_inside = |part| matches!(part, Component::Normal(_) | Component::CurDir);
     let folder = Path::new(".").join(folder.components().all(is_inside).then_some(folder)?);
     Some(folder.to_string_lossy().into_owned())
@@ -296,14 +435,28 @@ mod tests {
 
     #[test]
     fn folders_outside_that_of_the_template_are_no_default() {
-        for (picture, folder) in [
-            ("a.png", Some("./")),
-            ("b/c/a.png", Some("./b/c")),
-            ("/b/a.png", None),
-            ("../a.png", None),
+        for (folder, default) in [
+            ("", Some("./")),
+            ("b/c", Some("./b/c")),
+            ("/b", None),
+            ("..", None),
         ] {
-            let found = folder_of_template(Path::new(picture));
-            assert_eq!(found.as_deref(), folder, "{picture}");
+            let found = folder_of_template(Path::new(folder));
+            assert_eq!(found.as_deref(), default, "{folder}");
+        }
+    }
+
+    #[test]
+    fn folders_of_a_batch_end_before_wildcards_and_placeholders() {
+        for (path, folder, pattern) in [
+            ("rgb/", "rgb", ""),
+            ("rgb/*_left.png", "rgb", "*_left.png"),
+            ("/data/day*/rgb/*.png", "/data", "day*/rgb/*.png"),
+            ("out/{visibility}/", "out", "{visibility}"),
+            ("*.png", "", "*.png"),
+        ] {
+            let found = folder_and_pattern(Path::new(path));
+            assert_eq!(found, (folder.into(), pattern.into()), "{path}");
         }
     }
 

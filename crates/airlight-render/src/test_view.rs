@@ -5,6 +5,7 @@ use airlight::monte_carlo::{Estimate, PolarisedEstimate};
 use airlight::scene::{Channels, RadianceSampler, RadianceView};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use airlight::sun::{LimbDarkening, SunDisc};
+use airlight::{Cancelled, Control};
 use glam::DVec3;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -165,11 +166,21 @@ impl RadianceSampler for TestSampler {
         stokes[1] -= 1.0;
     }
 
-    fn estimate(&self, _direction: DVec3, _limit_m: Option<f64>) -> Estimate {
+    fn estimate_with(
+        &self,
+        _direction: DVec3,
+        _limit_m: Option<f64>,
+        _control: Control<'_>,
+    ) -> Result<Estimate, Cancelled> {
         unreachable!("pictures add bundles")
     }
 
-    fn polarised_estimate(&self, _direction: DVec3, _limit_m: Option<f64>) -> PolarisedEstimate {
+    fn polarised_estimate_with(
+        &self,
+        _direction: DVec3,
+        _limit_m: Option<f64>,
+        _control: Control<'_>,
+    ) -> Result<PolarisedEstimate, Cancelled> {
         unreachable!("pictures add bundles")
     }
 

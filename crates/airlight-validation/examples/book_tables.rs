@@ -9,6 +9,7 @@
 //! solver changed at a time, for the chapter on the solver. With the feature `gpu`: `frames` (frames of a graphics device, by renderer
 //! and sun) and `frames-monte-carlo`; both take minutes.
 
+use airlight::Control;
 use airlight::sky::SkySettings;
 use airlight_validation::check::Statistics;
 use airlight_validation::measured::{self, FOLDS};
@@ -96,8 +97,8 @@ fn tables() -> Result<(), Box<dyn Error>> {
 fn twilight() -> Result<(), Box<dyn Error>> {
     println!("| sun | clear | clear, fine | hazy | hazy, fine | desert | desert, fine |");
     println!("|---|---|---|---|---|---|---|");
-    let usual = skies::against_truth(&SkySettings::default());
-    let fine = skies::against_truth(&SkySettings::fine());
+    let usual = skies::against_truth(&SkySettings::default(), Control::default())?;
+    let fine = skies::against_truth(&SkySettings::fine(), Control::default())?;
     let mut suns: Vec<f64> = usual.iter().map(sun_zenith_deg).collect();
     suns.sort_by(f64::total_cmp);
     suns.dedup();
@@ -206,7 +207,8 @@ fn settings() {
     for (name, change) in changes {
         let mut settings = SkySettings::default();
         change(&mut settings);
-        let checks = skies::against_monte_carlo(&settings);
+        let checks =
+            skies::against_monte_carlo(&settings, Control::default()).expect("nothing cancels it");
         let rms = |wanted: fn(f64) -> bool| {
             let squares: Vec<f64> = checks
                 .iter()

@@ -45,7 +45,7 @@ pub fn run(suites: &[Suite]) -> Result<Vec<Check>, RunError> {
     run_with(suites, Control::default())
 }
 
-/// The same, cancelled between suites and, in those of a graphics device, between frames, which it reports.
+/// The same, with cancellation, and progress of the suites of a graphics device.
 ///
 /// # Errors
 /// As [`run`], and [`RunError::Cancelled`].
@@ -55,11 +55,11 @@ pub fn run_with(suites: &[Suite], control: Control<'_>) -> Result<Vec<Check>, Ru
         control.check()?;
         control.stage(suite.title(), 0);
         checks.extend(match suite {
-            Suite::Tables => skies::checks(),
-            Suite::MonteCarlo => skies::against_truth(&SkySettings::default()),
-            Suite::Limits => limits::checks(),
-            Suite::Peers => skies::peers(),
-            Suite::Measured => measured::checks(),
+            Suite::Tables => skies::checks(control)?,
+            Suite::MonteCarlo => skies::against_truth(&SkySettings::default(), control)?,
+            Suite::Limits => limits::checks(control)?,
+            Suite::Peers => skies::peers(control)?,
+            Suite::Measured => measured::checks(control)?,
             #[cfg(feature = "gpu")]
             Suite::Gpu | Suite::GpuAll => frames::checks(*suite, control)?,
             #[cfg(feature = "gpu")]

@@ -10,6 +10,7 @@ use airlight::atmosphere::{self, Atmosphere, Constituent, ConstituentKind, Densi
 use airlight::optics::PhaseFunction;
 use airlight::sky::SkySettings;
 use airlight::spectrum::SpectralCurve;
+use airlight::{Cancelled, Control};
 
 const AUREOLE: &str = include_str!("../data/sky_aureole_monte_carlo.csv");
 const HORIZON: &str = include_str!("../data/sky_horizon_monte_carlo.csv");
@@ -20,8 +21,17 @@ const SLABS: &str = include_str!("../data/sky_slabs_disort.csv");
 const SLAB_M: f64 = 1000.0;
 
 /// All checks of the suite.
-pub fn checks() -> Vec<Check> {
-    [around_the_sun(), at_the_horizon(), polarised(), thick()].concat()
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn checks(control: Control<'_>) -> Result<Vec<Check>, Cancelled> {
+    Ok([
+        around_the_sun(control)?,
+        at_the_horizon(control)?,
+        polarised(control)?,
+        thick(control)?,
+    ]
+    .concat())
 }
 
 /// A check against a table, without rows.
@@ -55,11 +65,6 @@ fn groups<'a>(table: &'a Table, columns: &[&str]) -> Vec<Vec<Line<'a>>> {
     groups
 }
 
-/// Solves for the sun of a group of lines.
-fn solved(air: &Atmosphere, nm: &[f64], sun_zenith_deg: f64, settings: &SkySettings) -> Solved {
-    Solved::new(air, nm, sun_zenith_deg, settings).expect("the skies of the tables can be solved")
-}
-
 fn scalar() -> SkySettings {
     SkySettings {
         polarisation_correction: false,
@@ -68,8 +73,9 @@ fn scalar() -> SkySettings {
 }
 
 /// Views from 1 to 10 degrees beside the sun.
-fn around_the_sun() -> Vec<Check> {
-    in_particles(AUREOLE, &["air", "aod_550", "sun"], |group, of| {
+fn around_the_sun(control: Control<'_>) -> Result<Vec<Check>, Cancelled> {
+    let columns = ["air", "aod_550", "sun"];
+    in_particles(AUREOLE, &columns, control, |group, of| {
         let sun = group.number("sun");
         let limit = if sun < 5.0 { 3.5 } else { 1.5 };
         (format!("around a sun at {sun} degrees, {of}"), limit)
@@ -77,9 +83,9 @@ fn around_the_sun() -> Vec<Check> {
 }
 
 /// Views from 0.3 to 8 degrees above the horizon, and from 1 km on both sides of it.
-fn at_the_horizon() -> Vec<Check> {
+fn at_the_horizon(control: Control<'_>) -> Result<Vec<Check>, Cancelled> {
     let columns = ["air", "aod_550", "sun", "altitude_m"];
-    in_particles(HORIZON, &columns, |group, of| {
+    in_particles(HORIZON, &columns, control, |group, of| {
         let [sun, altitude_m] = ["sun", "altitude_m"].map(|name| group.number(name));
         (
             format!("at the horizon from {altitude_m} m, sun at {sun} degrees, {of}"),
@@ -92,8 +98,9 @@ fn at_the_horizon() -> Vec<Check> {
 fn in_particles(
     text: &'static str,
     columns: &[&str],
+    control: Control<'_>,
     claim: impl Fn(&Line<'_>, &str) -> (String, f64),
-) -> Vec<Check> {
+) -> Result<Vec<Check>, Cancelled> {
     const WAVELENGTHS_NM: [f64; 3] = [440.0, 550.0, 680.0];
     let table = Table::new(text);
     let groups = groups(&table, columns);
@@ -110,14 +117,10 @@ fn in_particles(
                 Atmosphere::from_toml(&text).expect("an aerosol")
             }
         };
-        let solved = solved(
-            &air,
-            &WAVELENGTHS_NM,
-            90.0 - group[0].number("sun"),
-            &scalar(),
-        )
-        .with_mean_sunlight()
-        .seen_from(altitude_m);
+        let zenith_deg = 90.0 - group[0].number("sun");
+        let solved = Solved::of_table(&air, &WAVELENGTHS_NM, zenith_deg, &scalar(), control)?
+            .with_mean_sunlight()
+            .seen_from(altitude_m);
         let of = match depth {
             "" => name.to_owned(),
             _ => format!("{name} aerosol of optical depth {depth}"),
@@ -136,13 +139,13 @@ fn in_particles(
                 });
             }
         }
-        check
+        Ok(check)
     };
     groups.iter().map(check).collect()
 }
 
 /// Radiance of polarised light.
-fn polarised() -> Vec<Check> {
+fn polarised(control: Control<'_>) -> Result<Vec<Check>, Cancelled> {
     const WAVELENGTHS_NM: [f64; 4] = [360.0, 450.0, 550.0, 650.0];
     let table = Table::new(POLARISED);
     let groups = groups(&table, &["air", "sun_elevation_deg"]);
@@ -150,7 +153,8 @@ fn polarised() -> Vec<Check> {
         let (name, sun) = (group[0].text("air"), group[0].number("sun_elevation_deg"));
         let air = truth_air(name).expect("a known atmosphere");
         let settings = SkySettings::default();
-        let solved = solved(&air, &WAVELENGTHS_NM, 90.0 - sun, &settings).with_mean_sunlight();
+        let solved = Solved::of_table(&air, &WAVELENGTHS_NM, 90.0 - sun, &settings, control)?
+            .with_mean_sunlight();
         let limit = if sun < 0.0 { 3.0 } else { 1.0 };
         let what = format!("polarised light, {name}, sun at {sun} degrees");
         let mut check = check(what, "Airlight's Monte Carlo, polarised", limit);
@@ -169,18 +173,19 @@ fn polarised() -> Vec<Check> {
                 standard_error: line.number("i_error"),
             });
         }
-        check
+        Ok(check)
     };
     groups.iter().map(check).collect()
 }
 
 /// Uniform slabs seen from the ground.
-fn thick() -> Vec<Check> {
+fn thick(control: Control<'_>) -> Result<Vec<Check>, Cancelled> {
     let table = Table::new(SLABS);
     let mut checks: Vec<Check> = Vec::new();
     for group in groups(&table, &["sun_zenith", "omega", "g", "tau", "albedo"]) {
         let [sun, depth] = ["sun_zenith", "tau"].map(|name| group[0].number(name));
-        let solved = solved(&slab(&group[0]), &[550.0], sun, &scalar());
+        let air = slab(&group[0]);
+        let solved = Solved::of_table(&air, &[550.0], sun, &scalar(), control)?;
         let limit = match depth {
             ..=5.0 => 1.0,
             ..=100.0 => 1.5,
@@ -206,7 +211,7 @@ fn thick() -> Vec<Check> {
             });
         }
     }
-    checks
+    Ok(checks)
 }
 
 /// The slab of a line of its table, on a planet as large as the Earth.

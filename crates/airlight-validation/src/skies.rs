@@ -8,6 +8,7 @@ use airlight::atmosphere::{
     self, AerosolLoad, AerosolMixture, Atmosphere, ConstituentKind, reference,
 };
 use airlight::sky::SkySettings;
+use airlight::{Cancelled, Control};
 
 /// A table of skies computed by one solver.
 struct Source {
@@ -177,29 +178,49 @@ fn light_of(single: bool) -> &'static str {
 }
 
 /// All checks of the suite of tables.
-pub fn checks() -> Vec<Check> {
-    let mut all = against_monte_carlo(&SkySettings::default());
-    for source in &SASKTRAN {
-        all.extend(against(source, &SkySettings::default()));
-    }
-    all.push(against_libradtran());
-    all
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn checks(control: Control<'_>) -> Result<Vec<Check>, Cancelled> {
+    let mut all = against_monte_carlo(&SkySettings::default(), control)?;
+    all.extend(against_all(&SASKTRAN, &SkySettings::default(), control)?);
+    all.push(against_libradtran(control)?);
+    Ok(all)
 }
 
 /// Checks by day and in twilight against Airlight's Monte Carlo.
-pub fn against_truth(settings: &SkySettings) -> Vec<Check> {
-    let tables = TRUTH.iter();
-    tables
-        .flat_map(|source| against(source, settings))
-        .collect()
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn against_truth(
+    settings: &SkySettings,
+    control: Control<'_>,
+) -> Result<Vec<Check>, Cancelled> {
+    against_all(&TRUTH, settings, control)
 }
 
 /// Checks of all orders against another Monte Carlo, with these settings.
-pub fn against_monte_carlo(settings: &SkySettings) -> Vec<Check> {
-    let tables = MONTE_CARLO.iter();
-    tables
-        .flat_map(|source| against(source, settings))
-        .collect()
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn against_monte_carlo(
+    settings: &SkySettings,
+    control: Control<'_>,
+) -> Result<Vec<Check>, Cancelled> {
+    against_all(&MONTE_CARLO, settings, control)
+}
+
+/// The checks of several tables.
+fn against_all(
+    sources: &[Source],
+    settings: &SkySettings,
+    control: Control<'_>,
+) -> Result<Vec<Check>, Cancelled> {
+    let mut all = Vec::new();
+    for source in sources {
+        all.extend(against(source, settings, control)?);
+    }
+    Ok(all)
 }
 
 /// These settings without polarisation, which the tables do without.
@@ -211,16 +232,21 @@ fn scalar(settings: &SkySettings) -> SkySettings {
 }
 
 /// One check for each atmosphere, sun and kind of light of a table.
-fn against(source: &Source, settings: &SkySettings) -> Vec<Check> {
+fn against(
+    source: &Source,
+    settings: &SkySettings,
+    control: Control<'_>,
+) -> Result<Vec<Check>, Cancelled> {
     let table = Table::new(source.text);
     let mut checks: Vec<(Case, Solved, Check)> = Vec::new();
     for line in table.lines() {
+        control.check()?;
         let case = Case::of(line, source);
         let found = checks.iter().position(|(other, ..)| other.is(&case));
-        let index = found.unwrap_or_else(|| {
+        if found.is_none() {
             let (air, wavelengths) = atmosphere(case.atmosphere);
-            let solved = Solved::new(&air, &wavelengths, case.sun_zenith_deg, &scalar(settings))
-                .expect("the atmospheres of the tables can be solved");
+            let sun = case.sun_zenith_deg;
+            let solved = Solved::of_table(&air, &wavelengths, sun, &scalar(settings), control)?;
             let light = if case.single {
                 "single scattering"
             } else {
@@ -239,12 +265,12 @@ fn against(source: &Source, settings: &SkySettings) -> Vec<Check> {
                 rows: Vec::new(),
             };
             checks.push((case, solved, check));
-            checks.len() - 1
-        });
+        }
+        let index = found.unwrap_or(checks.len() - 1);
         let (case, solved, check) = &mut checks[index];
         add_rows(&mut check.rows, &table, line, solved, case.single);
     }
-    checks.into_iter().map(|(.., check)| check).collect()
+    Ok(checks.into_iter().map(|(.., check)| check).collect())
 }
 
 /// Adds the values of a line: one with its standard error, or one per wavelength.
@@ -276,46 +302,58 @@ fn add_rows(rows: &mut Vec<Row>, table: &Table, line: Line<'_>, solved: &Solved,
     }
 }
 
-fn against_libradtran() -> Check {
+fn against_libradtran(control: Control<'_>) -> Result<Check, Cancelled> {
     const FLAT_EARTH_DEG: f64 = 75.0;
-    let rows = csm_rows(LIBRADTRAN, false, |line| {
+    let is_high = |line: &Line<'_>| {
         line.number("sun_zenith_deg") <= FLAT_EARTH_DEG
             && line.number("view_zenith_deg") <= FLAT_EARTH_DEG
-    });
-    Check {
+    };
+    Ok(Check {
         suite: Suite::Tables,
         what: "all orders, csm, sun and view within 75 degrees of the zenith".into(),
         against: "libRadtran 2.0.2, flat".into(),
         unit: Unit::Percent,
         limit: None,
         limit_of_rms: None,
-        rows,
-    }
+        rows: csm_rows(LIBRADTRAN, false, is_high, control)?,
+    })
 }
 
 /// Other models of the comparison of clear-sky models, with the same atmosphere.
-pub fn peers() -> Vec<Check> {
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn peers(control: Control<'_>) -> Result<Vec<Check>, Cancelled> {
     let table = Table::new(PEERS);
     let mut models: Vec<&str> = table.lines().map(|line| line.text("model")).collect();
     models.dedup();
     let check = |model: &&str| {
         // Bruneton's model with single scattering only.
         let single = model.ends_with("_ss");
-        Check {
+        let is_of_model = |line: &Line<'_>| line.text("model") == *model;
+        Ok(Check {
             suite: Suite::Peers,
             what: format!("{}, csm", light_of(single)),
             against: format!("{model}, as in clear-sky-models"),
             unit: Unit::Percent,
             limit: None,
             limit_of_rms: None,
-            rows: csm_rows(PEERS, single, |line| line.text("model") == *model),
-        }
+            rows: csm_rows(PEERS, single, is_of_model, control)?,
+        })
     };
     models.iter().map(check).collect()
 }
 
 /// Rows of a table of the atmosphere `csm` by wavelength.
-fn csm_rows(text: &'static str, single: bool, wanted: impl Fn(&Line<'_>) -> bool) -> Vec<Row> {
+///
+/// # Errors
+/// [`Cancelled`].
+fn csm_rows(
+    text: &'static str,
+    single: bool,
+    wanted: impl Fn(&Line<'_>) -> bool,
+    control: Control<'_>,
+) -> Result<Vec<Row>, Cancelled> {
     let table = Table::new(text);
     let columns = table.radiance_columns();
     let wavelengths: Vec<f64> = columns.iter().map(|(_, nm)| *nm).collect();
@@ -323,13 +361,20 @@ fn csm_rows(text: &'static str, single: bool, wanted: impl Fn(&Line<'_>) -> bool
     let mut solved: Vec<Solved> = Vec::new();
     let mut rows = Vec::new();
     for line in table.lines().filter(wanted) {
+        control.check()?;
         let sun = line.number("sun_zenith_deg");
         let found = solved.iter().position(|s| s.sun_zenith_deg() == sun);
-        let index = found.unwrap_or_else(|| {
-            let sky = Solved::new(&air, &wavelengths, sun, &scalar(&SkySettings::default()));
-            solved.push(sky.expect("the reference atmosphere can be solved"));
-            solved.len() - 1
-        });
+        if found.is_none() {
+            let settings = scalar(&SkySettings::default());
+            solved.push(Solved::of_table(
+                &air,
+                &wavelengths,
+                sun,
+                &settings,
+                control,
+            )?);
+        }
+        let index = found.unwrap_or(solved.len() - 1);
         let (view, azimuth) = (
             line.number("view_zenith_deg"),
             line.number("rel_azimuth_deg"),
@@ -346,5 +391,5 @@ fn csm_rows(text: &'static str, single: bool, wanted: impl Fn(&Line<'_>) -> bool
             standard_error: 0.0,
         }));
     }
-    rows
+    Ok(rows)
 }

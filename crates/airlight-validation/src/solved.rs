@@ -5,6 +5,7 @@ use airlight::atmosphere::Atmosphere;
 use airlight::axes::direction;
 use airlight::sky::{Sky, SkyError, SkySettings, SunCoverage};
 use airlight::spectrum::WavelengthGrid;
+use airlight::{Cancelled, Control};
 
 /// One atmosphere with one position of the sun, seen from near the ground.
 #[derive(Debug)]
@@ -23,12 +24,13 @@ impl Solved {
     /// Solves for one position of the sun.
     ///
     /// # Errors
-    /// [`SkyError`] for an atmosphere or settings that the solver refuses.
+    /// [`SkyError`] for an atmosphere or settings that the solver refuses, and if the caller cancelled.
     pub fn new(
         air: &Atmosphere,
         wavelengths_nm: &[f64],
         sun_zenith_deg: f64,
         settings: &SkySettings,
+        control: Control<'_>,
     ) -> Result<Self, SkyError> {
         let grid = WavelengthGrid::from_wavelengths_nm(wavelengths_nm.to_vec())
             .map_err(|_| SkyError::Setting("increasing wavelengths from 300 to 900 nm"))?;
@@ -38,7 +40,7 @@ impl Solved {
             ..settings.clone()
         };
         Ok(Self {
-            sky: Sky::prepare(air, &grid, &settings)?,
+            sky: Sky::prepare_with(air, &grid, &settings, control)?,
             wavelengths_nm: wavelengths_nm.to_vec(),
             solar: wavelengths_nm
                 .iter()
@@ -48,6 +50,26 @@ impl Solved {
             altitude_m: 0.0,
             sun_distance: 1.0,
         })
+    }
+
+    /// As [`Solved::new`], for air that is known to be right.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    ///
+    /// # Panics
+    /// Where the solver refuses the air or the settings.
+    pub fn of_table(
+        air: &Atmosphere,
+        wavelengths_nm: &[f64],
+        sun_zenith_deg: f64,
+        settings: &SkySettings,
+        control: Control<'_>,
+    ) -> Result<Self, Cancelled> {
+        match Self::new(air, wavelengths_nm, sun_zenith_deg, settings, control) {
+            Err(SkyError::Cancelled(cancelled)) => Err(cancelled),
+            solved => Ok(solved.expect("the skies of the tables can be solved")),
+        }
     }
 
     /// This sky under the mean solar irradiance around each wavelength, as Airlight's Monte Carlo has it, instead of that at the

@@ -33,6 +33,12 @@ pub struct BatchArgs {
     /// all
     #[arg(long, value_name = "K/N")]
     pub shard: Option<Shard>,
+    /// Draw nothing and write a job template of Open Job Description for render farms, whose tasks make the shards
+    #[arg(long, value_name = "FILE.json", conflicts_with_all = ["shard", "manifest", "overwrite"])]
+    pub openjd: Option<PathBuf>,
+    /// Number of tasks of the job [default: 16, or fewer for few pictures]
+    #[arg(long, value_name = "N", requires = "openjd")]
+    pub tasks: Option<u32>,
     /// Manifest, with a line of JSON for each picture [default: manifest.jsonl beside the outputs; with --shard 3/16
     /// manifest-3-of-16.jsonl]
     #[arg(long, value_name = "FILE")]
@@ -57,6 +63,7 @@ impl BatchArgs {
         !self.vary.is_empty()
             || !self.each.is_empty()
             || self.shard.is_some()
+            || self.openjd.is_some()
             || self.patch_interval_s.is_some()
             || self.manifest.is_some()
             || self.jobs.is_some()

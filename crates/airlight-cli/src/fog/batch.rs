@@ -7,8 +7,10 @@ use crate::progress::{Busy, PicturesBar};
 use crate::report::{self, seconds};
 use airlight_image::Control;
 use airlight_render::batch::{BatchPlan, FoundInputs, listed};
+use airlight_render::openjd::JobTemplate;
 use airlight_render::overlay::OverlayScene;
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::time::Instant;
 
 /// Writes the pictures of a description whose paths are folders or patterns.
@@ -18,6 +20,9 @@ use std::time::Instant;
 pub fn run(args: &OverlayArgs, scene: OverlayScene) -> Result<(), CliError> {
     let plan = BatchPlan::new(scene, args.batch.settings())?;
     remarks(plan.found(), args.quiet);
+    if let Some(path) = &args.batch.openjd {
+        return write_job(args, &plan, path);
+    }
     let batch = {
         let _busy = Busy::with("planning");
         plan.start()?
@@ -66,6 +71,12 @@ pub fn run(args: &OverlayArgs, scene: OverlayScene) -> Result<(), CliError> {
         ))),
         None => Ok(()),
     }
+}
+
+/// Writes a job for a render farm.
+fn write_job(args: &OverlayArgs, plan: &BatchPlan, path: &Path) -> Result<(), CliError> {
+    let job = JobTemplate::of_batch(plan, args.batch.tasks)?;
+    report::write_job(path, &job, args.quiet)
 }
 
 /// Reports pictures that are left out, other files and depth files without a picture on standard error.

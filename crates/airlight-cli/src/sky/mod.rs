@@ -56,11 +56,7 @@ pub fn run(args: &SkyArgs) -> Result<(), CliError> {
 /// Writes a job for a render farm.
 fn write_job(args: &SkyArgs, scene: &Scene, path: &Path) -> Result<(), CliError> {
     let job = JobTemplate::of_scene(&Renderer::new(scene)?, args.machines.tasks)?;
-    report::write(path, job.to_json())?;
-    match args.quiet {
-        true => Ok(()),
-        false => report::print(&format!("{}: job template\n", path.display())),
-    }
+    report::write_job(path, &job, args.quiet)
 }
 
 fn one(

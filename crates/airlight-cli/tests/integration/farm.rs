@@ -88,6 +88,83 @@ fn shards_and_joins_that_cannot_be_are_refused() {
 }
 
 #[test]
+fn a_job_of_fog_makes_the_pictures_of_the_command() {
+    let folder = Folder::new();
+    for name in ["rgb", "depth"] {
+        std::fs::create_dir(folder.file(name)).unwrap();
+    }
+    for name in ["a", "b", "c"] {
+        let colour = image::RgbImage::from_pixel(8, 4, image::Rgb([200, 90, 30]));
+        let depth = image::ImageBuffer::from_pixel(8, 4, image::Luma([90_u16]));
+        colour.save(folder.file(format!("rgb/{name}.png"))).unwrap();
+        depth
+            .save(folder.file(format!("depth/{name}_m.png")))
+            .unwrap();
+    }
+    let words = "fog rgb/*.png --depth depth/*_m.png --vary visibility=50..500 --seed 3";
+    let text = succeed(
+        &folder,
+        &format!("{words} -o farm/ --openjd job.json --tasks 2"),
+    );
+    assert_eq!(text, "job.json: job template\n");
+    assert!(!folder.file("farm").exists());
+    let job: Value =
+        serde_json::from_slice(&std::fs::read(folder.file("job.json")).unwrap()).unwrap();
+    let defaults = ["./rgb", "./depth", "./farm", "airlight"];
+    for (parameter, default) in job["parameterDefinitions"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .zip(defaults)
+    {
+        assert_eq!(parameter["default"], default, "{parameter}");
+    }
+    let script = &job["steps"][0]["script"];
+    let scene = script["embeddedFiles"][0]["data"].as_str().unwrap();
+    std::fs::write(folder.file("scene.toml"), scene).unwrap();
+    let action = script["actions"]["onRun"]["args"].as_array().unwrap();
+    let action: Vec<&str> = action.iter().map(|word| word.as_str().unwrap()).collect();
+    for number in 1..=2 {
+        let command = action
+            .join(" ")
+            .replace("{{Task.File.Scene}}", "scene.toml")
+            .replace("{{Param.PicturesDir}}", "rgb")
+            .replace("{{Param.DepthDir}}", "depth")
+            .replace("{{Param.OutputDir}}", "farm")
+            .replace("{{Task.Param.Shard}}", &number.to_string());
+        succeed(&folder, &command);
+    }
+    succeed(&folder, &format!("{words} -o whole/"));
+    for name in ["a", "b", "c"] {
+        let [farm, whole] = ["farm", "whole"]
+            .map(|output| std::fs::read(folder.file(format!("{output}/{name}.png"))).unwrap());
+        assert!(farm == whole, "{name}");
+    }
+    for (words, part) in [
+        (
+            format!("{words} -o farm/ --openjd a.json --tasks 4"),
+            "1 to 3, got 4",
+        ),
+        (
+            format!("{words} -o farm/ --openjd a.json --shard 1/2"),
+            "--shard",
+        ),
+        (
+            "fog rgb/a.png --depth depth/a_m.png --visibility-m 9 -o a.png --openjd a.json"
+                .to_owned(),
+            "expected several pictures",
+        ),
+    ] {
+        let output = run(&folder, &words);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(
+            !output.status.success() && said.contains(part),
+            "{words}: {said}"
+        );
+    }
+}
+
+#[test]
 fn a_job_draws_nothing_by_itself() {
     let folder = Folder::new();
     let words = format!(

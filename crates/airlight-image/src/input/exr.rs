@@ -37,7 +37,7 @@ const BATCH_BYTES: usize = 64 << 20;
 const BLOCK_BYTES: usize = 1 << 31;
 
 /// Reads the colours of a layer, or of the file.
-pub(super) fn read(source: Source, layer: Option<&str>) -> Result<Picture, DecodeError> {
+pub(super) fn read(source: Source<'_>, layer: Option<&str>) -> Result<Picture, DecodeError> {
     let file = ExrFile::open(source)?;
     let colours = exr_channels::colours(file.headers(), layer)?;
     let part = colours.part;
@@ -123,7 +123,10 @@ fn from_luma_chroma(samples: &mut [f32], weights: [f32; 3]) {
 }
 
 /// Reads a depth channel; that of the layer of the colours beside which it lies, if they are known.
-pub(super) fn read_depth(source: Source, options: &DepthOptions) -> Result<RawDepth, DecodeError> {
+pub(super) fn read_depth(
+    source: Source<'_>,
+    options: &DepthOptions,
+) -> Result<RawDepth, DecodeError> {
     let file = ExrFile::open(source)?;
     let (channel, beside) = (options.channel.as_deref(), options.beside.as_ref());
     let found = exr_channels::depth(file.headers(), channel, beside);
@@ -154,8 +157,8 @@ pub(super) fn read_depth(source: Source, options: &DepthOptions) -> Result<RawDe
 }
 
 /// An EXR file after reading its header.
-struct ExrFile {
-    reader: Reader<BufReader<TrackedFile>>,
+struct ExrFile<'a> {
+    reader: Reader<BufReader<TrackedFile<'a>>>,
     /// Horizontal and vertical distance of the samples of each channel of each part, pixels.
     sampling: Vec<Vec<Vec2<usize>>>,
 }
@@ -172,8 +175,8 @@ struct Loaded {
     repaired: u64,
 }
 
-impl ExrFile {
-    fn open(mut source: Source) -> Result<Self, DecodeError> {
+impl<'a> ExrFile<'a> {
+    fn open(mut source: Source<'a>) -> Result<Self, DecodeError> {
         // Errors are those of the second attempt.
         let headers = MetaData::read_from_buffered(&mut source.reader, false);
         source.reader.rewind()?;

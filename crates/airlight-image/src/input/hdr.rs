@@ -27,7 +27,7 @@ struct Header {
     pixel_aspect: f32,
 }
 
-pub(super) fn read(mut source: Source) -> Result<Picture, DecodeError> {
+pub(super) fn read(mut source: Source<'_>) -> Result<Picture, DecodeError> {
     let reader = &mut source.reader;
     let header = header(reader)?;
     let size = header.size;

@@ -10,7 +10,7 @@ use crate::{Notes, Size};
 use zune_core::{bytestream::ZCursor, colorspace::ColorSpace, options::DecoderOptions};
 use zune_jpeg::{JpegDecoder, errors::DecodeErrors};
 
-pub(super) fn read(mut source: Source) -> Result<Picture, DecodeError> {
+pub(super) fn read(mut source: Source<'_>) -> Result<Picture, DecodeError> {
     let bytes = source.read_to_end()?;
     check_encoding(&bytes)?;
     require_end(&bytes)?;

@@ -27,7 +27,7 @@ pub use exr_channels::ExrLayer;
 pub use orientation::Orientation;
 pub use picture::{LightReference, Picture, SampleBits};
 
-use crate::{ImageError, PictureFormat, Size};
+use crate::{Control, ImageError, PictureFormat, Size};
 use depth::RawDepth;
 use source::{DecodeError, FileKind, Source, decode_file, decode_source};
 use std::path::Path;
@@ -57,7 +57,19 @@ const DEPTH_FORMATS: &str = "OpenEXR, PNG, NPY, NPZ, PFM, TIFF";
 /// [`ImageError::NoChannel`] where the layer has no colours, and [`ImageError::Read`] for anything else: an unknown
 /// format, corrupt contents, CMYK, floats of a TIFF file that are encoded by a curve, more than 65536 pixels a side or 2^30 in total.
 pub fn read_picture(path: &Path, layer: Option<&str>) -> Result<Picture, ImageError> {
-    decode_file(path, PICTURE_FORMATS, |source| {
+    read_picture_with(path, layer, Control::default())
+}
+
+/// As [`read_picture`], with cancellation.
+///
+/// # Errors
+/// As [`read_picture`], and if the caller cancelled.
+pub fn read_picture_with(
+    path: &Path,
+    layer: Option<&str>,
+    control: Control<'_>,
+) -> Result<Picture, ImageError> {
+    decode_file(path, PICTURE_FORMATS, control, |source| {
         decode_picture(source, layer)
     })
 }
@@ -76,20 +88,21 @@ pub fn is_tiff_name(path: &Path) -> bool {
 /// Reads a picture, and its depth from the same file, which may be a pipe. `options` are those of the depth of a picture.
 ///
 /// # Errors
-/// For the picture as [`read_picture`]; those of the depth, as [`read_depth`], are in the inner result.
+/// For the picture as [`read_picture_with`]; those of the depth, as [`read_depth_with`], are in the inner result.
 pub fn read_picture_with_depth(
     path: &Path,
     layer: Option<&str>,
     options: impl FnOnce(&Picture) -> DepthOptions,
+    control: Control<'_>,
 ) -> Result<(Picture, Result<DepthMap, ImageError>), ImageError> {
     let mut again = None;
-    let picture = decode_file(path, PICTURE_FORMATS, |source| {
+    let picture = decode_file(path, PICTURE_FORMATS, control, |source| {
         again = source.again();
         decode_picture(source, layer)
     })?;
     let options = options(&picture);
     let depth = match again {
-        None => read_depth(path, &options),
+        None => read_depth_with(path, &options, control),
         Some(source) => finish_depth(path, &options, |path| {
             decode_source(source, path, |source| decode_depth(source, &options))
         }),
@@ -97,7 +110,7 @@ pub fn read_picture_with_depth(
     Ok((picture, depth))
 }
 
-fn decode_picture(source: Source, layer: Option<&str>) -> Result<Picture, DecodeError> {
+fn decode_picture(source: Source<'_>, layer: Option<&str>) -> Result<Picture, DecodeError> {
     if let Some(layer) = layer
         && source.kind != FileKind::Exr
     {
@@ -137,8 +150,22 @@ fn decode_picture(source: Source, layer: Option<&str>) -> Result<Picture, Decode
 /// As [`read_picture`]; [`ImageError::Setting`] where an option is out of range;
 /// [`ImageError::NegativeDepth`]; [`ImageError::Read`] also where all pixels are holes.
 pub fn read_depth(path: &Path, options: &DepthOptions) -> Result<DepthMap, ImageError> {
+    read_depth_with(path, options, Control::default())
+}
+
+/// As [`read_depth`], with cancellation.
+///
+/// # Errors
+/// As [`read_depth`], and if the caller cancelled.
+pub fn read_depth_with(
+    path: &Path,
+    options: &DepthOptions,
+    control: Control<'_>,
+) -> Result<DepthMap, ImageError> {
     finish_depth(path, options, |path| {
-        decode_file(path, DEPTH_FORMATS, |source| decode_depth(source, options))
+        decode_file(path, DEPTH_FORMATS, control, |source| {
+            decode_depth(source, options)
+        })
     })
 }
 
@@ -204,7 +231,7 @@ fn replace_holes(depth: &mut [f32], value: f32) {
     }
 }
 
-fn decode_depth(source: Source, options: &DepthOptions) -> Result<RawDepth, DecodeError> {
+fn decode_depth(source: Source<'_>, options: &DepthOptions) -> Result<RawDepth, DecodeError> {
     let channel = options.channel.as_deref();
     if let Some(channel) = channel
         && !matches!(source.kind, FileKind::Exr | FileKind::Npz)

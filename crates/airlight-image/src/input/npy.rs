@@ -14,7 +14,7 @@ const MAX_HEADER: u32 = 1 << 20;
 /// Bytes read at a time.
 const BLOCK: usize = 1 << 16;
 
-pub(super) fn read(mut source: Source) -> Result<RawDepth, DecodeError> {
+pub(super) fn read(mut source: Source<'_>) -> Result<RawDepth, DecodeError> {
     let length = source.length;
     let reader = &mut source.reader;
     let mut start = [0; 8];

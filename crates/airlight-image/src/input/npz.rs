@@ -20,7 +20,10 @@ const DEPTH_NAMES: [&str; 6] = ["depth", "depths", "depth_map", "z", "distance",
 const UNKNOWN: u32 = u32::MAX;
 
 /// The array with a name, or the depth, as an NPY file in memory.
-pub(super) fn open(mut source: Source, wanted: Option<&str>) -> Result<Source, DecodeError> {
+pub(super) fn open<'a>(
+    mut source: Source<'a>,
+    wanted: Option<&str>,
+) -> Result<Source<'a>, DecodeError> {
     let bytes = source.read_to_end()?;
     let entries = directory(&bytes)?;
     let arrays: Vec<&Entry> = entries

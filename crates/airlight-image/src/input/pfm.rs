@@ -10,7 +10,7 @@ use std::io::{BufRead, Read};
 /// Longest word of a header, bytes.
 const MAX_WORD: usize = 64;
 
-pub(super) fn read(mut source: Source) -> Result<RawDepth, DecodeError> {
+pub(super) fn read(mut source: Source<'_>) -> Result<RawDepth, DecodeError> {
     let length = source.length;
     let reader = &mut source.reader;
     let mut header = 0;

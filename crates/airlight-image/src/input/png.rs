@@ -12,9 +12,12 @@ use crate::{Notes, Size, output::Chromaticities};
 use png::{BitDepth, ColorType, Decoder, DecodingError, Info, Limits, Reader, Transformations};
 use std::io::BufReader;
 
-type PngReader = Reader<BufReader<TrackedFile>>;
+type PngReader<'a> = Reader<BufReader<TrackedFile<'a>>>;
 
-fn start(source: Source, transform: Transformations) -> Result<(PngReader, Size), DecodeError> {
+fn start(
+    source: Source<'_>,
+    transform: Transformations,
+) -> Result<(PngReader<'_>, Size), DecodeError> {
     let mut decoder = Decoder::new_with_limits(source.reader, Limits { bytes: 1 << 28 });
     decoder.set_transformations(transform);
     decoder.set_ignore_text_chunk(true);
@@ -23,7 +26,7 @@ fn start(source: Source, transform: Transformations) -> Result<(PngReader, Size)
     Ok((decoder.read_info().map_err(failed)?, size))
 }
 
-pub(super) fn read(source: Source) -> Result<Picture, DecodeError> {
+pub(super) fn read(source: Source<'_>) -> Result<Picture, DecodeError> {
     let (mut reader, size) = start(source, Transformations::EXPAND)?;
     let (color, depth) = reader.output_color_type();
     let layout = PixelLayout {
@@ -74,7 +77,10 @@ pub(super) fn read(source: Source) -> Result<Picture, DecodeError> {
 }
 
 /// A depth map: grey of 8 or 16 bits, in the numbers of the file; or red, green and blue that are equal or packed.
-pub(super) fn read_depth(source: Source, packing: DepthPacking) -> Result<RawDepth, DecodeError> {
+pub(super) fn read_depth(
+    source: Source<'_>,
+    packing: DepthPacking,
+) -> Result<RawDepth, DecodeError> {
     let (mut reader, size) = start(source, Transformations::IDENTITY)?;
     let (color, depth) = reader.output_color_type();
     let components = match color {
@@ -149,7 +155,7 @@ const BATCH_BYTES: usize = 1 << 18;
 
 /// Passes whole rows from the top to `take`, several at a time, while the next ones are decoded. Interlaced pictures are
 /// decoded completely first.
-fn rows(reader: &mut PngReader, mut take: impl FnMut(&[u8]) + Send) -> Result<(), DecodeError> {
+fn rows(reader: &mut PngReader<'_>, mut take: impl FnMut(&[u8]) + Send) -> Result<(), DecodeError> {
     let info = reader.info();
     let (width, height) = (info.width, info.height as usize);
     let too_large = || DecodeError::invalid("a row does not fit into memory");
@@ -187,7 +193,7 @@ fn rows(reader: &mut PngReader, mut take: impl FnMut(&[u8]) + Send) -> Result<()
     Ok(())
 }
 
-fn decode_row(reader: &mut PngReader, row: &mut [u8]) -> Result<(), DecodeError> {
+fn decode_row(reader: &mut PngReader<'_>, row: &mut [u8]) -> Result<(), DecodeError> {
     match reader.read_row(row).map_err(failed)? {
         Some(_) => Ok(()),
         None => Err(DecodeError::Truncated("rows are missing".to_owned())),

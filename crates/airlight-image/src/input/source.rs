@@ -1,6 +1,6 @@
 //! Files being read: their format, errors of decoders, limits of size and memory.
 
-use crate::{ImageError, Size};
+use crate::{Control, ImageError, Size};
 use std::{
     fs::File,
     io::{self, BufReader, Cursor, Read, Seek, SeekFrom},
@@ -49,19 +49,21 @@ impl FileKind {
 }
 
 /// A file being read.
-pub(super) struct Source {
+pub(super) struct Source<'a> {
     pub(super) kind: FileKind,
     /// At the first byte.
-    pub(super) reader: BufReader<TrackedFile>,
+    pub(super) reader: BufReader<TrackedFile<'a>>,
     /// Size of the file in bytes.
     pub(super) length: u64,
     ended: Arc<AtomicBool>,
 }
 
-/// A file that records whether a read reached its end.
-pub(super) struct TrackedFile {
+/// A file that records whether a read reached its end, and cannot be read once the caller has cancelled: so decoders of all formats
+/// end.
+pub(super) struct TrackedFile<'a> {
     bytes: Bytes,
     ended: Arc<AtomicBool>,
+    control: Control<'a>,
 }
 
 /// Bytes of a file.
@@ -71,13 +73,14 @@ enum Bytes {
     Memory(Cursor<Vec<u8>>),
 }
 
-impl Source {
+impl Source<'_> {
     /// The file with other contents, in memory.
     pub(super) fn with_bytes(self, bytes: Vec<u8>) -> Self {
         let length = bytes.len() as u64;
         let tracked = TrackedFile {
             bytes: Bytes::Memory(Cursor::new(bytes)),
             ended: self.ended.clone(),
+            control: self.reader.get_ref().control,
         };
         Self {
             reader: BufReader::new(tracked),
@@ -95,6 +98,7 @@ impl Source {
         let tracked = TrackedFile {
             bytes: Bytes::Memory(Cursor::new(memory.get_ref().clone())),
             ended: ended.clone(),
+            control: self.reader.get_ref().control,
         };
         Some(Self {
             kind: self.kind,
@@ -113,8 +117,9 @@ impl Source {
     }
 }
 
-impl Read for TrackedFile {
+impl Read for TrackedFile<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.control.check().map_err(io::Error::other)?;
         let read = match &mut self.bytes {
             Bytes::File(file) => file.read(buffer)?,
             Bytes::Memory(memory) => memory.read(buffer)?,
@@ -126,7 +131,7 @@ impl Read for TrackedFile {
     }
 }
 
-impl Seek for TrackedFile {
+impl Seek for TrackedFile<'_> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         match &mut self.bytes {
             Bytes::File(file) => file.seek(to),
@@ -189,29 +194,33 @@ impl From<io::Error> for DecodeError {
 }
 
 /// Opens a file and decodes it. `formats` lists the formats that `decode` distinguishes.
-pub(super) fn decode_file<T>(
+pub(super) fn decode_file<'a, T>(
     path: &Path,
     formats: &str,
-    decode: impl FnOnce(Source) -> Result<T, DecodeError>,
+    control: Control<'a>,
+    decode: impl FnOnce(Source<'a>) -> Result<T, DecodeError>,
 ) -> Result<T, ImageError> {
-    let source = open(path, formats).map_err(|error| error.in_file(path, false))?;
+    control.check()?;
+    let source = open(path, formats, control).map_err(|error| error.in_file(path, false))?;
     decode_source(source, path, decode)
 }
 
 /// Decodes an open file.
-pub(super) fn decode_source<T>(
-    source: Source,
+pub(super) fn decode_source<'a, T>(
+    source: Source<'a>,
     path: &Path,
-    decode: impl FnOnce(Source) -> Result<T, DecodeError>,
+    decode: impl FnOnce(Source<'a>) -> Result<T, DecodeError>,
 ) -> Result<T, ImageError> {
-    let ended = source.ended.clone();
+    let (ended, control) = (source.ended.clone(), source.reader.get_ref().control);
     // Some of the decoding libraries panic on corrupt files.
-    panic::catch_unwind(AssertUnwindSafe(|| decode(source)))
-        .unwrap_or_else(|_| Err(DecodeError::invalid("corrupt data: the decoder failed")))
-        .map_err(|error| error.in_file(path, ended.load(Ordering::Relaxed)))
+    let decoded = panic::catch_unwind(AssertUnwindSafe(|| decode(source)))
+        .unwrap_or_else(|_| Err(DecodeError::invalid("corrupt data: the decoder failed")));
+    // Whatever a decoder makes of a file that it may no longer read.
+    control.check()?;
+    decoded.map_err(|error| error.in_file(path, ended.load(Ordering::Relaxed)))
 }
 
-fn open(path: &Path, formats: &str) -> Result<Source, DecodeError> {
+fn open<'a>(path: &Path, formats: &str, control: Control<'a>) -> Result<Source<'a>, DecodeError> {
     let mut file = File::open(path)?;
     let about = file.metadata()?;
     let (mut bytes, length) = if about.is_file() || about.is_dir() {
@@ -239,6 +248,7 @@ fn open(path: &Path, formats: &str) -> Result<Source, DecodeError> {
     let mut tracked = TrackedFile {
         bytes,
         ended: ended.clone(),
+        control,
     };
     tracked.rewind()?;
     Ok(Source {

@@ -20,9 +20,9 @@ use std::io::BufReader;
 /// Largest size of the decoded samples, bytes.
 const MAX_BYTES: u64 = 1 << 33;
 
-type TiffDecoder = Decoder<BufReader<TrackedFile>>;
+type TiffDecoder<'a> = Decoder<BufReader<TrackedFile<'a>>>;
 
-fn start(source: Source) -> Result<(TiffDecoder, Size), DecodeError> {
+fn start(source: Source<'_>) -> Result<(TiffDecoder<'_>, Size), DecodeError> {
     let mut limits = Limits::default();
     limits.decoding_buffer_size = usize::try_from(MAX_BYTES).unwrap_or(usize::MAX);
     let mut decoder = Decoder::new(source.reader)
@@ -41,7 +41,7 @@ struct Components {
     decoded: usize,
 }
 
-pub(super) fn read(source: Source) -> Result<Picture, DecodeError> {
+pub(super) fn read(source: Source<'_>) -> Result<Picture, DecodeError> {
     let (mut decoder, size) = start(source)?;
     let mut notes = Notes::default();
     let components = components(&mut decoder, &mut notes)?;
@@ -104,7 +104,7 @@ pub(super) fn read(source: Source) -> Result<Picture, DecodeError> {
 }
 
 /// The components of a file; those besides colours and opacity are noted.
-fn components(decoder: &mut TiffDecoder, notes: &mut Notes) -> Result<Components, DecodeError> {
+fn components(decoder: &mut TiffDecoder<'_>, notes: &mut Notes) -> Result<Components, DecodeError> {
     // Kinds that the decoder refuses without a name that a user knows.
     let photometric = number(decoder, Tag::PhotometricInterpretation)?;
     match photometric.and_then(PhotometricInterpretation::from_u16) {
@@ -287,7 +287,7 @@ fn check_count(size: Size, components: &Components, count: usize) -> Result<(), 
 }
 
 /// A depth map: one number to a pixel, integer or float of any width.
-pub(super) fn read_depth(source: Source) -> Result<RawDepth, DecodeError> {
+pub(super) fn read_depth(source: Source<'_>) -> Result<RawDepth, DecodeError> {
     let (mut decoder, size) = start(source)?;
     match decoder.colortype().map_err(failed)? {
         ColorType::Gray(_) => {}
@@ -327,12 +327,12 @@ fn numbers(image: DecodingResult) -> (Vec<f32>, SampleBits) {
 }
 
 /// The number of a tag; `None` if the file has none.
-fn number(decoder: &mut TiffDecoder, tag: Tag) -> Result<Option<u16>, DecodeError> {
+fn number(decoder: &mut TiffDecoder<'_>, tag: Tag) -> Result<Option<u16>, DecodeError> {
     decoder.find_tag_unsigned(tag).map_err(failed)
 }
 
 /// The fraction of a tag; `None` if there is none.
-fn rational(decoder: &mut TiffDecoder, tag: Tag) -> Option<f32> {
+fn rational(decoder: &mut TiffDecoder<'_>, tag: Tag) -> Option<f32> {
     match decoder.find_tag(tag) {
         Ok(Some(Value::Rational(above, below))) => Some(above as f32 / below as f32),
         _ => None,

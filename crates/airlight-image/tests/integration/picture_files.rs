@@ -2,7 +2,7 @@
 
 use crate::common::{Folder, full_metadata, size, sky, tone};
 use airlight_image::{
-    Control, ImageError, PictureFormat, PictureOptions, Progress, RowSource, Size,
+    Control, DepthOptions, ImageError, PictureFormat, PictureOptions, Progress, RowSource, Size,
     output::{
         Metadata, Written,
         exr::{self, ExrOptions},
@@ -10,6 +10,7 @@ use airlight_image::{
         jpeg::{self, JpegOptions},
         png::{self, PngOptions},
     },
+    read_depth_with, read_picture_with,
     rows::RowFn,
     write_picture,
 };
@@ -117,6 +118,34 @@ fn a_cancelled_write_leaves_nothing() {
         assert_eq!(fs::read(&path).unwrap(), b"before");
     }
     assert_eq!(folder.names("").len(), 4);
+}
+
+#[test]
+fn a_cancelled_reader_ends() {
+    let folder = Folder::new();
+    let size = size(64, 32);
+    let cancel = AtomicBool::new(true);
+    let cancelled = || Control::cancelled_by(&cancel);
+    let (tone, options) = (tone(), PictureOptions::default());
+    for ending in ["exr", "hdr", "png", "jpg"] {
+        let path = folder.file(format!("sky.{ending}"));
+        let rows = sky(size, 3);
+        write_picture(&path, size, &rows, &tone, &options, Control::default()).unwrap();
+        let error = read_picture_with(&path, None, cancelled()).unwrap_err();
+        assert!(error.is_cancelled(), "{ending}: {error}");
+        read_picture_with(&path, None, Control::default()).unwrap();
+    }
+    let path = folder.file("sky.exr");
+    let options = DepthOptions {
+        channel: Some("R".to_owned()),
+        ..DepthOptions::default()
+    };
+    let error = read_depth_with(&path, &options, cancelled()).unwrap_err();
+    assert!(error.is_cancelled(), "{error}");
+    read_depth_with(&path, &options, Control::default()).unwrap();
+    let none = folder.file("none.png");
+    let error = read_picture_with(&none, None, cancelled()).unwrap_err();
+    assert!(error.is_cancelled(), "{error}");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! TIFF pictures.
 
 use crate::common::{Folder, files::*, size};
+use airlight::Control;
 use airlight::spectrum::rgb::srgb_encode;
 use airlight_image::input::{
     DepthOptions, LightReference, Orientation, Picture, SampleBits, read_picture,
@@ -308,7 +309,7 @@ fn other_kinds_are_refused_by_name() {
         grey_is_depth: false,
         ..DepthOptions::default()
     };
-    let (_, depth) = read_picture_with_depth(&path, None, options).unwrap();
+    let (_, depth) = read_picture_with_depth(&path, None, options, Control::default()).unwrap();
     let error = depth.unwrap_err().to_string();
     assert!(error.contains("a TIFF picture without depth"), "{error}");
 }

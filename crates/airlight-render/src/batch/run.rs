@@ -50,9 +50,17 @@ impl BatchPlan {
     /// [`BatchError`] if the manifest is not usable, an existing picture has other settings, or the sky cannot be solved; the
     /// manifest is then unchanged.
     pub fn start(&self) -> Result<BatchRun<'_>, BatchError> {
+        self.start_with(Control::default())
+    }
+
+    /// As [`Self::start`], with cancellation.
+    ///
+    /// # Errors
+    /// As [`Self::start`], and if the caller cancelled.
+    pub fn start_with(&self, control: Control<'_>) -> Result<BatchRun<'_>, BatchError> {
         let light = match self.varies(Affects::Sky) {
             true => None,
-            false => self.scene().solve_sky()?,
+            false => self.scene().solve_sky_with(control)?,
         };
         let path = self.manifest();
         create_folder(path.parent())?;
@@ -237,7 +245,7 @@ impl Worker<'_> {
         };
         for variants in variants.chunks(at_once) {
             let scene = self.plan.scene_of(input, variants[0]);
-            match OverlayImage::read(&scene, format) {
+            match OverlayImage::read_with(&scene, format, self.control) {
                 Ok(image) => self.make_all(input, &image, variants)?,
                 Err(error) => variants
                     .iter()
@@ -286,12 +294,13 @@ impl Worker<'_> {
         input: &Input,
         variant: Variant,
     ) -> Result<(), BatchError> {
+        let control = self.control.without_progress();
         let own = match self.plan.varies(Affects::Sky) {
-            true => scene.solve_sky()?,
+            true => scene.solve_sky_with(control)?,
             false => None,
         };
         let light = own.as_ref().or(self.light);
-        let prepared = PreparedOverlay::new(scene, image, light)?;
+        let prepared = PreparedOverlay::new_with(scene, image, light, control)?;
         let output = &self.plan.output(input, variant);
         let rows = prepared.output(scene, image, scene.output_format(output)?)?;
         let name = self.manifest.name_of(output);
@@ -308,7 +317,7 @@ impl Worker<'_> {
             (&prepared, rows.exposure()),
         );
         self.manifest.begin([output.as_path()], &name, &record)?;
-        let written = rows.write(output, self.control.without_progress())?;
+        let written = rows.write(output, control)?;
         let mut notes = rows.overlay().notes();
         notes.count(
             written.clamped_samples,

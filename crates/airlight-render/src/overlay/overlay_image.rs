@@ -4,11 +4,11 @@ use super::{LightLevel, OverlayScene, OverlaySpec};
 use crate::RenderError;
 use crate::ignored::refuse_display_options;
 use airlight_image::input::{
-    DepthMap, DepthOptions, LightReference, Picture, read_depth, read_picture,
+    DepthMap, DepthOptions, LightReference, Picture, read_depth_with, read_picture_with,
     read_picture_with_depth,
 };
 use airlight_image::output::PictureFormat;
-use airlight_image::{ImageError, Notes};
+use airlight_image::{Control, ImageError, Notes};
 
 /// A colour picture, its depth map and its ambient light.
 #[derive(Clone, Debug)]
@@ -49,6 +49,18 @@ impl OverlayImage {
     /// # Errors
     /// [`RenderError`] if one cannot be read, their sizes differ, or a setting does not apply to the picture.
     pub fn read(scene: &OverlayScene, format: PictureFormat) -> Result<Self, RenderError> {
+        Self::read_with(scene, format, Control::default())
+    }
+
+    /// As [`OverlayImage::read`], with cancellation.
+    ///
+    /// # Errors
+    /// As [`OverlayImage::read`], and if the caller cancelled.
+    pub fn read_with(
+        scene: &OverlayScene,
+        format: PictureFormat,
+        control: Control<'_>,
+    ) -> Result<Self, RenderError> {
         let spec = &scene.overlay;
         let depth_options = spec.depth_options()?;
         let beside = |picture: &Picture| DepthOptions {
@@ -58,10 +70,10 @@ impl OverlayImage {
         };
         let layer = spec.colour_layer.as_deref();
         let (mut picture, depth) = match &spec.depth {
-            None => read_picture_with_depth(&spec.colour, layer, beside)?,
+            None => read_picture_with_depth(&spec.colour, layer, beside, control)?,
             Some(file) => {
-                let picture = read_picture(&spec.colour, layer)?;
-                let depth = read_depth(file, &beside(&picture));
+                let picture = read_picture_with(&spec.colour, layer, control)?;
+                let depth = read_depth_with(file, &beside(&picture), control);
                 (picture, depth)
             }
         };

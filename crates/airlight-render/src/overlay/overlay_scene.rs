@@ -235,11 +235,23 @@ impl OverlayScene {
     /// # Errors
     /// [`RenderError`] for an invalid layer.
     pub fn constituents(&self) -> Result<Option<Vec<Constituent>>, RenderError> {
+        self.constituents_with(Control::default())
+    }
+
+    /// As [`Self::constituents`], with cancellation.
+    ///
+    /// # Errors
+    /// As [`Self::constituents`], and if the caller cancelled.
+    pub fn constituents_with(
+        &self,
+        control: Control<'_>,
+    ) -> Result<Option<Vec<Constituent>>, RenderError> {
         let Some(fog) = self.fog_layers()? else {
             return Ok(None);
         };
         let grid = WavelengthGrid::standard();
-        Ok(Some(fog.constituents(grid.wavelengths_nm())?))
+        let layers = fog.constituents_with(grid.wavelengths_nm(), control)?;
+        Ok(Some(layers))
     }
 
     /// The camera of a picture of this size, with pixels of this width over height.

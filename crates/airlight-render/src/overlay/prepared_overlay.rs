@@ -52,6 +52,19 @@ impl PreparedOverlay {
         image: &OverlayImage,
         sky: Option<&SkyLight>,
     ) -> Result<Self, RenderError> {
+        Self::new_with(scene, image, sky, Control::default())
+    }
+
+    /// As [`PreparedOverlay::new`], with cancellation.
+    ///
+    /// # Errors
+    /// As [`PreparedOverlay::new`], and if the caller cancelled.
+    pub fn new_with(
+        scene: &OverlayScene,
+        image: &OverlayImage,
+        sky: Option<&SkyLight>,
+        control: Control<'_>,
+    ) -> Result<Self, RenderError> {
         let camera = scene.camera(image.picture.size, image.picture.pixel_aspect)?;
         let ambient = LightLevel {
             colour: image
@@ -66,7 +79,7 @@ impl PreparedOverlay {
             camera: &camera,
             ambient,
         };
-        let (fog, level) = fog(scene, sky, &view)?;
+        let (fog, level) = fog(scene, sky, &view, control)?;
         Ok(Self {
             camera,
             level,
@@ -196,10 +209,11 @@ fn fog(
     scene: &OverlayScene,
     sky: Option<&SkyLight>,
     view: &View<'_>,
+    control: Control<'_>,
 ) -> Result<(FogOverlay, LightLevel), RenderError> {
     let primaries = Primaries::of(view.picture);
     let ambient = primaries.to_srgb(view.ambient.colour);
-    let Some(layers) = scene.constituents()? else {
+    let Some(layers) = scene.constituents_with(control)? else {
         return Ok((one_colour(scene, ambient)?, view.ambient));
     };
     let rgb = |layer| RgbLayer::from_constituent(layer, RgbSpace::Srgb);
@@ -207,7 +221,7 @@ fn fog(
     let rgb = rgb.map_err(|error| SceneError::from(FogError::from(error)))?;
     let (source, level) = match sky {
         Some(sky) => {
-            let sky = sky.with_fog(&layers, scene.fog_scattering())?;
+            let sky = sky.with_fog_with(&layers, scene.fog_scattering(), control)?;
             let (radiance_scale, level) = light_level::radiance_scale(&scene.overlay, &sky, view)?;
             let source = FogSource::Sky {
                 sky,
@@ -216,7 +230,7 @@ fn fog(
             };
             (source, level)
         }
-        None => (alone(scene, &rgb, ambient)?, view.ambient),
+        None => (alone(scene, &rgb, ambient, control)?, view.ambient),
     };
     let lights = lights_in_fog(scene, &rgb, &source, view)?;
     Ok((FogOverlay::Fog(source, lights), level))
@@ -240,6 +254,7 @@ fn alone(
     scene: &OverlayScene,
     layers: &[RgbLayer],
     ambient: [f32; 3],
+    control: Control<'_>,
 ) -> Result<FogSource, RenderError> {
     let sun_strength = scene.overlay.sun_strength.unwrap_or(SUN_STRENGTH);
     let sun = scene.scene.sun.elevation_deg.map(|elevation_deg| {
@@ -255,9 +270,15 @@ fn alone(
         ambient,
         ground_albedo: [albedo as f32; 3],
     };
-    RgbFog::new(layers, Ground::FLAT, &light, scene.fog_scattering())
-        .map(FogSource::Alone)
-        .map_err(|error| SceneError::from(error).into())
+    RgbFog::new_with(
+        layers,
+        Ground::FLAT,
+        &light,
+        scene.fog_scattering(),
+        control,
+    )
+    .map(FogSource::Alone)
+    .map_err(|error| SceneError::from(error).into())
 }
 
 /// The description's lights in the fog.

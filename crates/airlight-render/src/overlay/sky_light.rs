@@ -50,7 +50,7 @@ impl SkyLight {
             .view_with(scene.observer_altitude_m, sun.state(), control)
             .map_err(SceneError::from)?;
         Ok(Self {
-            night: NightLight::new(scene, &view, &sun, RgbSpace::Srgb)?,
+            night: NightLight::new_with(scene, &view, &sun, RgbSpace::Srgb, control)?,
             view,
             observer_altitude_m: scene.observer_altitude_m,
             sun: sun.state(),
@@ -67,6 +67,19 @@ impl SkyLight {
         layers: &[Constituent],
         scattering: FogScattering,
     ) -> Result<RgbFoggySky, RenderError> {
+        self.with_fog_with(layers, scattering, Control::default())
+    }
+
+    /// As [`Self::with_fog`], with cancellation.
+    ///
+    /// # Errors
+    /// As [`Self::with_fog`], and if the caller cancelled.
+    pub fn with_fog_with(
+        &self,
+        layers: &[Constituent],
+        scattering: FogScattering,
+        control: Control<'_>,
+    ) -> Result<RgbFoggySky, RenderError> {
         if layers.iter().any(|layer| layer.density.is_uniform()) {
             return Err(Self::needs_top());
         }
@@ -79,10 +92,15 @@ impl SkyLight {
             Some(last) if last.layers == layers && last.scattering == scattering => {
                 return Ok(last.sky);
             }
-            Some(last) => last.sky.with_fog(layers, scattering)?,
+            Some(last) => last.sky.with_fog_with(layers, scattering, control)?,
             None => match &self.night {
-                Some(night) => RgbFoggySky::at_night(&self.view, night, layers, scattering)?,
-                None => RgbFoggySky::new(&self.view, layers, scattering, RgbSpace::Srgb)?,
+                Some(night) => {
+                    RgbFoggySky::at_night_with(&self.view, night, layers, scattering, control)?
+                }
+                None => {
+                    let space = RgbSpace::Srgb;
+                    RgbFoggySky::new_with(&self.view, layers, scattering, space, control)?
+                }
             },
         };
         *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Some(LitFog {

@@ -18,7 +18,7 @@ use airlight::scene::{
 };
 use airlight::sky::{Scattering, SunCoverage};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
-use airlight::{Control, axes};
+use airlight::{Cancelled, Control, axes};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -86,8 +86,10 @@ impl Probe {
         let altitude_m = resolved.observer_altitude_m;
         let night = resolved.night(&sun);
         let paths = match &night {
-            Some(night) => prepared.night_view(altitude_m, &sun.state(), night, channels)?,
-            None => prepared.view(altitude_m, &sun.state(), channels)?,
+            Some(night) => {
+                prepared.night_view_with(altitude_m, &sun.state(), night, channels, control)?
+            }
+            None => prepared.view_with(altitude_m, &sun.state(), channels, control)?,
         };
         let view = match paths.sampler() {
             Some(sampler) => sampler.preview(),
@@ -105,6 +107,7 @@ impl Probe {
         let scattering = resolved.solver.scattering.unwrap_or(Scattering::All).name();
         let variants = capabilities.variants;
         let variant = scene.solver.variant.clone();
+        let views = self.rays.par_iter().map(|ray| asked.ray(ray, control));
         Ok(ProbeAnswer {
             format: PROBE_FORMAT,
             program: SOFTWARE,
@@ -124,7 +127,7 @@ impl Probe {
                 .and_then(|night| night.moon)
                 .and_then(|moon| asked.moon(&moon)),
             sky: asked.sky(),
-            views: self.rays.par_iter().map(|ray| asked.ray(ray)).collect(),
+            views: views.collect::<Result<_, Cancelled>>()?,
         })
     }
 }
@@ -223,7 +226,8 @@ impl Asked {
         }
     }
 
-    fn ray(&self, ray: &ProbeRay) -> RayAnswer {
+    fn ray(&self, ray: &ProbeRay, control: Control<'_>) -> Result<RayAnswer, Cancelled> {
+        control.check()?;
         let direction = axes::direction(ray.azimuth_deg, ray.elevation_deg);
         let clear = self.view.line_of_sight(direction, ray.distance_m);
         let meets_ground = match &clear {
@@ -240,7 +244,7 @@ impl Asked {
         let limit_m = ray.distance_m.filter(|_| !meets_ground);
         let part =
             |of: fn(&airlight::sky::LineOfSight) -> &Vec<f32>| line.as_ref().map(of).cloned();
-        RayAnswer {
+        Ok(RayAnswer {
             azimuth_deg: ray.azimuth_deg,
             elevation_deg: ray.elevation_deg,
             direction: direction.to_array(),
@@ -255,9 +259,9 @@ impl Asked {
             xyz_cd_m2: xyz,
             rgb_cd_m2: self.space.from_xyz(xyz),
             luminance_cd_m2: xyz[1],
-            monte_carlo: self.monte_carlo(direction, limit_m),
+            monte_carlo: self.monte_carlo(direction, limit_m, control)?,
             polarisation: self.polarisation(direction, ray.distance_m),
-        }
+        })
     }
 
     /// Radiance along a ray up to a distance (or to the ground or space), and transmittance, in fog or by night.
@@ -288,15 +292,25 @@ impl Asked {
         light.map(PolarisationAnswer::from)
     }
 
-    fn monte_carlo(&self, direction: DVec3, limit_m: Option<f64>) -> Option<MonteCarloAnswer> {
-        let (sampler, grid) = (self.paths.sampler()?, self.paths.grid()?);
-        Some(match self.polarised {
+    fn monte_carlo(
+        &self,
+        direction: DVec3,
+        limit_m: Option<f64>,
+        control: Control<'_>,
+    ) -> Result<Option<MonteCarloAnswer>, Cancelled> {
+        let (Some(sampler), Some(grid)) = (self.paths.sampler(), self.paths.grid()) else {
+            return Ok(None);
+        };
+        Ok(Some(match self.polarised {
             true => {
-                let found = sampler.polarised_estimate(direction, limit_m);
+                let found = sampler.polarised_estimate_with(direction, limit_m, control)?;
                 MonteCarloAnswer::polarised(found, grid)
             }
-            false => MonteCarloAnswer::new(sampler.estimate(direction, limit_m), grid),
-        })
+            false => {
+                let found = sampler.estimate_with(direction, limit_m, control)?;
+                MonteCarloAnswer::new(found, grid)
+            }
+        }))
     }
 }
 

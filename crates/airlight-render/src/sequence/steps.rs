@@ -77,7 +77,8 @@ impl Renderer {
         let solution = self.prepare(suns, control)?;
         let mut common: Option<Exposure> = None;
         for step in metered {
-            let exposure = self.frame(solution.as_ref(), Some(step.time))?.exposure()?;
+            let frame = self.frame_with(solution.as_ref(), Some(step.time), control)?;
+            let exposure = frame.exposure()?;
             if common.is_none_or(|least| exposure.factor() < least.factor()) {
                 common = Some(exposure);
             }

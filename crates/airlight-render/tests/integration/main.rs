@@ -1,6 +1,7 @@
 //! Drawing from outside the crate: fog over pictures, batches, sequences.
 
 mod batch;
+mod cancelled;
 mod colours;
 mod common;
 mod display;

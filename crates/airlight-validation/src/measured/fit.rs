@@ -2,6 +2,7 @@
 
 use super::{Aerosol, SUN_DISTANCE_AU, Scan, air_of_the_day, compare};
 use crate::check::Row;
+use airlight::Control;
 
 /// Largest number of steps.
 const STEPS: usize = 12;
@@ -12,9 +13,16 @@ const DIFFERENCE: f64 = 0.01;
 pub fn fit(start: Aerosol, wavelengths_nm: &[f64], scans: &[&Scan]) -> (Aerosol, f64) {
     let residuals = |aerosol: &Aerosol| -> Vec<f64> {
         let air = air_of_the_day(aerosol);
-        let rows = scans
-            .iter()
-            .flat_map(|scan| compare(&air, wavelengths_nm, scan, SUN_DISTANCE_AU));
+        let rows = scans.iter().flat_map(|scan| {
+            compare(
+                &air,
+                wavelengths_nm,
+                scan,
+                SUN_DISTANCE_AU,
+                Control::default(),
+            )
+            .expect("nothing cancels it")
+        });
         rows.map(|row: Row| 1e3 * (row.ours - row.reference))
             .collect()
     };

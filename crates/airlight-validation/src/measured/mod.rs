@@ -15,6 +15,7 @@ use crate::solved::Solved;
 use crate::table::Table;
 use airlight::atmosphere::{Atmosphere, reference};
 use airlight::sky::SkySettings;
+use airlight::{Cancelled, Control};
 
 /// Longest wavelength in the metric, nm.
 const LONGEST_NM: f64 = 720.0;
@@ -60,20 +61,19 @@ pub fn scans() -> (Vec<f64>, Vec<Scan>) {
 }
 
 /// Compares a model atmosphere with a scan.
+///
+/// # Errors
+/// [`Cancelled`].
 pub fn compare(
     air: &Atmosphere,
     wavelengths_nm: &[f64],
     scan: &Scan,
     sun_distance_au: f64,
-) -> Vec<Row> {
-    let solved = Solved::new(
-        air,
-        wavelengths_nm,
-        scan.sun_zenith_deg,
-        &SkySettings::default(),
-    )
-    .expect("air that was checked can be solved")
-    .at_sun_distance(sun_distance_au);
+    control: Control<'_>,
+) -> Result<Vec<Row>, Cancelled> {
+    let (zenith_deg, settings) = (scan.sun_zenith_deg, SkySettings::default());
+    let solved = Solved::of_table(air, wavelengths_nm, zenith_deg, &settings, control)?
+        .at_sun_distance(sun_distance_au);
     let mut rows = Vec::new();
     for (&(zenith, azimuth), measured) in scan.views.iter().zip(&scan.radiance) {
         let light = solved.look(zenith, azimuth);
@@ -85,26 +85,31 @@ pub fn compare(
             standard_error: 0.0,
         }));
     }
-    rows
+    Ok(rows)
 }
 
 /// All checks of the suite.
-pub fn checks() -> Vec<Check> {
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn checks(control: Control<'_>) -> Result<Vec<Check>, Cancelled> {
     let (wavelengths, scans) = scans();
     let csm = reference::csm();
-    let rows = scans
-        .iter()
+    let mut rows = Vec::new();
+    for scan in &scans {
         // As in the published comparison, which used the sun's mean distance.
-        .flat_map(|scan| compare(&csm, &wavelengths, scan, 1.0));
-    let published_air = check("csm, as published models were run", rows.collect(), None);
+        rows.extend(compare(&csm, &wavelengths, scan, 1.0, control)?);
+    }
+    let published_air = check("csm, as published models were run", rows, None);
     let mut real = Vec::new();
     let mut folds = Vec::new();
     for fold in &FOLDS {
         let air = air_of_the_day(&fold.aerosol);
         let scored = scans.iter().filter(|scan| fold.scored.contains(&scan.time));
-        let rows: Vec<Row> = scored
-            .flat_map(|scan| compare(&air, &wavelengths, scan, SUN_DISTANCE_AU))
-            .collect();
+        let mut rows: Vec<Row> = Vec::new();
+        for scan in scored {
+            rows.extend(compare(&air, &wavelengths, scan, SUN_DISTANCE_AU, control)?);
+        }
         real.extend(rows.iter().copied());
         let what = format!("air of the day, scans {}", fold.scored.join(", "));
         folds.push(check(&what, rows, None));
@@ -114,7 +119,7 @@ pub fn checks() -> Vec<Check> {
         check("air of the day, all scans", real, Some(9.0)),
     ];
     all.extend(folds);
-    all
+    Ok(all)
 }
 
 /// A check whose claim is the root mean square, not each value.

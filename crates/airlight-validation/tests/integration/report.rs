@@ -1,5 +1,6 @@
 //! Claimed bounds of the accuracy report. Run with `--nocapture` for the errors.
 
+use airlight::Control;
 use airlight::sky::SkySettings;
 use airlight_validation::{Check, Suite, measured, run, skies};
 
@@ -48,7 +49,8 @@ fn skies_agree_with_the_monte_carlo_down_to_deep_twilight() {
 #[test]
 #[ignore = "the finest settings solved 24 times"]
 fn fine_settings_agree_with_the_monte_carlo() {
-    for mut check in skies::against_truth(&SkySettings::fine()) {
+    let checks = skies::against_truth(&SkySettings::fine(), Control::default()).unwrap();
+    for mut check in checks {
         print(&check);
         let by_day = check.rows[0].at.sun_zenith_deg < 90.0;
         let dust = check.what.contains("desert") && check.rows[0].at.sun_zenith_deg > 88.0;

@@ -1,6 +1,7 @@
 //! Fog droplets: an analytic phase function by diameter, or published size distributions and Lorenz-Mie theory.
 
 use super::{Constituent, ConstituentKind, DensityProfile};
+use crate::control::Control;
 use crate::names::{Named, named, written_by_name};
 use crate::optics::PhaseFunction;
 use crate::optics::mie::droplets::Drops;
@@ -157,6 +158,21 @@ impl Constituent {
         density: DensityProfile,
         wavelengths_nm: &[f64],
     ) -> Result<Self, MieError> {
+        let control = Control::default();
+        Self::fog_with(extinction_per_m, droplets, density, wavelengths_nm, control)
+    }
+
+    /// As [`Constituent::fog`], with cancellation of the computation of published droplets.
+    ///
+    /// # Errors
+    /// As [`Constituent::fog`], and if the caller cancelled.
+    pub fn fog_with(
+        extinction_per_m: f64,
+        droplets: DropletKind,
+        density: DensityProfile,
+        wavelengths_nm: &[f64],
+        control: Control<'_>,
+    ) -> Result<Self, MieError> {
         let grey = |phase| {
             let scattering = SpectralCurve::Constant(extinction_per_m);
             (scattering, SpectralCurve::Constant(0.0), phase)
@@ -165,7 +181,7 @@ impl Constituent {
             DropletKind::Analytic(kind) => grey(kind.phase()),
             DropletKind::Isotropic => grey(PhaseFunction::Isotropic),
             DropletKind::Published(drops) => {
-                let table = drops.table(wavelengths_nm)?;
+                let table = drops.table_with(wavelengths_nm, control)?;
                 let number = extinction_per_m / table.green.extinction_um2();
                 let curve = |of: &dyn Fn(&BulkOptics) -> f64| {
                     let values = table.bulk.iter().map(|bulk| number * of(bulk)).collect();

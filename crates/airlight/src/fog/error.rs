@@ -2,6 +2,7 @@
 
 use super::values::Values;
 use crate::atmosphere::DensityError;
+use crate::control::Cancelled;
 use crate::optics::PhaseError;
 use glam::DVec3;
 
@@ -62,6 +63,9 @@ pub enum FogError {
     /// An invalid density profile.
     #[error(transparent)]
     Density(#[from] DensityError),
+    /// The caller cancelled the computation.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// Checks that all values are finite and not negative.

@@ -9,6 +9,7 @@ use super::ray_block::{PerRay, RAYS, RayBlock, in_lanes, store};
 use super::ray_cuts::height_breakpoints;
 use super::single_scattering::SingleScattering;
 use crate::atmosphere::RaySegment;
+use crate::control::{Cancelled, Control};
 use crate::math::simd::vectorized;
 use crate::spectrum::Spectrum;
 use crate::transfer::PathOptics;
@@ -41,13 +42,14 @@ impl<const N: usize> FogLanes<N> {
     /// them.
     ///
     /// # Errors
-    /// [`FogError`] for the first value out of range.
+    /// [`FogError`] for the first value out of range, and if the caller cancelled.
     pub fn new(
         layers: &[LayerLanes<N>],
         ground: Ground,
         lighting: FogLighting<Spectrum<N>>,
         scattering: FogScattering,
         lanes: usize,
+        control: Control<'_>,
     ) -> Result<Self, FogError> {
         ground.validate()?;
         lighting.validate()?;
@@ -67,33 +69,28 @@ impl<const N: usize> FogLanes<N> {
             field: None,
         };
         if scattering == FogScattering::Multiple {
-            fog.field = fog.solve(lanes);
+            fog.field = fog.solve(lanes, control)?;
         }
         Ok(fog)
     }
 
     /// Solves for the diffuse light.
-    fn solve(&self, lanes: usize) -> Option<Field<N>> {
+    fn solve(&self, lanes: usize, control: Control<'_>) -> Result<Option<Field<N>>, Cancelled> {
         let reduced: Vec<_> = self
             .layers
             .iter()
             .filter_map(MergedLayer::reduced)
             .collect();
         if reduced.is_empty() {
-            return None;
+            return Ok(None);
         }
         let sin_sun = self.lighting.sun.map_or(1.0, |sun| sun.direction.y);
         let single = self.single_scattering(MergedLayer::stream_extinctions, |_| {
             [Spectrum::ZERO; STREAMS]
         });
         let sun_depth = |height| single.depth_to_sun(height, sin_sun);
-        Some(Field::solve(
-            reduced,
-            &self.ground,
-            &self.lighting,
-            sun_depth,
-            lanes,
-        ))
+        let (ground, lighting) = (&self.ground, &self.lighting);
+        Field::solve(reduced, ground, lighting, sun_depth, lanes, control).map(Some)
     }
 
     /// Lighting of the fog.

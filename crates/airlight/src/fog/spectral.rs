@@ -8,6 +8,7 @@ use super::lighting::{FogLighting, FogScattering, Ground};
 use super::multiple::DEGREES;
 use super::table::TableLanes;
 use crate::atmosphere::{Constituent, RaySegment};
+use crate::control::Control;
 use crate::math::slices::check_length;
 use crate::spectrum::{SpectralCurve, Spectrum, WavelengthGrid};
 use crate::transfer::residual::STREAMS;
@@ -96,12 +97,35 @@ impl Fog {
         scattering: FogScattering,
         grid: &WavelengthGrid,
     ) -> Result<Self, FogError> {
+        Self::new_with(
+            layers,
+            ground,
+            lighting,
+            scattering,
+            grid,
+            Control::default(),
+        )
+    }
+
+    /// As [`Fog::new`], with cancellation.
+    ///
+    /// # Errors
+    /// As [`Fog::new`], and if the caller cancelled.
+    pub fn new_with(
+        layers: &[Constituent],
+        ground: Ground,
+        lighting: &FogLighting,
+        scattering: FogScattering,
+        grid: &WavelengthGrid,
+        control: Control<'_>,
+    ) -> Result<Self, FogError> {
         lighting.validate()?;
         let fog = FogInputs {
             layers,
             ground,
             lighting,
             scattering,
+            control,
         };
         Ok(Self {
             shared: Arc::new(FogShared {
@@ -280,9 +304,23 @@ impl RgbFog {
         lighting: &FogLighting<[f32; 3]>,
         scattering: FogScattering,
     ) -> Result<Self, FogError> {
+        Self::new_with(layers, ground, lighting, scattering, Control::default())
+    }
+
+    /// As [`RgbFog::new`], with cancellation.
+    ///
+    /// # Errors
+    /// As [`RgbFog::new`], and if the caller cancelled.
+    pub fn new_with(
+        layers: &[RgbLayer],
+        ground: Ground,
+        lighting: &FogLighting<[f32; 3]>,
+        scattering: FogScattering,
+        control: Control<'_>,
+    ) -> Result<Self, FogError> {
         let layers: Vec<LayerLanes<3>> = layers.iter().map(LayerLanes::rgb).collect();
         let lighting = lighting.map(|&rgb| Spectrum(rgb));
-        let lanes = FogLanes::new(&layers, ground, lighting, scattering, 3)?;
+        let lanes = FogLanes::new(&layers, ground, lighting, scattering, 3, control)?;
         Ok(Self {
             lanes: Arc::new(lanes),
         })
@@ -507,6 +545,7 @@ struct FogInputs<'a> {
     ground: Ground,
     lighting: &'a FogLighting,
     scattering: FogScattering,
+    control: Control<'a>,
 }
 
 impl InBlocks for FogInputs<'_> {
@@ -523,7 +562,14 @@ impl InBlocks for FogInputs<'_> {
             .map(|layer| LayerLanes::new(layer, &wavelengths_nm))
             .collect();
         let lighting = self.lighting.map(|curve| sampled(curve, &wavelengths_nm));
-        let fog = FogLanes::new(&layers, self.ground, lighting, self.scattering, lanes)?;
+        let fog = FogLanes::new(
+            &layers,
+            self.ground,
+            lighting,
+            self.scattering,
+            lanes,
+            self.control,
+        )?;
         Ok(Box::new(SharedLanes(Arc::new(fog))))
     }
 }

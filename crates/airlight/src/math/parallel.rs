@@ -43,13 +43,37 @@ pub(crate) fn for_each_chunk<T: Send>(
     }
 }
 
-/// Results of `f` for each chunk of `size` values; the last chunk may be shorter.
-pub(crate) fn map_chunks<S: Sync, T: Send>(
+/// As [`for_each_chunk`], or the error of one of the calls.
+///
+/// # Errors
+/// As `f`.
+pub(crate) fn try_for_each_chunk<T: Send, E: Send>(
+    values: &mut [T],
+    size: usize,
+    f: impl Fn(usize, &mut [T]) -> Result<(), E> + Send + Sync,
+) -> Result<(), E> {
+    #[cfg(feature = "parallel")]
+    return values
+        .par_chunks_mut(size)
+        .enumerate()
+        .try_for_each(|(index, chunk)| f(index, chunk));
+    #[cfg(not(feature = "parallel"))]
+    values
+        .chunks_mut(size)
+        .enumerate()
+        .try_for_each(|(index, chunk)| f(index, chunk))
+}
+
+/// Results of `f` for each chunk of `size` values, or the error of one of the calls; the last chunk may be shorter.
+///
+/// # Errors
+/// As `f`.
+pub(crate) fn try_map_chunks<S: Sync, T: Send, E: Send>(
     values: &[S],
     size: usize,
-    f: impl Fn(&[S]) -> T + Send + Sync,
-) -> Vec<T> {
-    map(values.len().div_ceil(size), |index| {
+    f: impl Fn(&[S]) -> Result<T, E> + Send + Sync,
+) -> Result<Vec<T>, E> {
+    try_map(values.len().div_ceil(size), |index| {
         let first = index * size;
         f(&values[first..values.len().min(first + size)])
     })
@@ -73,8 +97,11 @@ mod tests {
             });
             assert_eq!(values, squares);
             let sums: Vec<usize> = squares.chunks(4).map(|c| c.iter().sum()).collect();
-            assert_eq!(map_chunks(&squares, 4, |c| c.iter().sum::<usize>()), sums);
+            let summed = try_map_chunks(&squares, 4, |c| Ok::<_, ()>(c.iter().sum::<usize>()));
+            assert_eq!(summed, Ok(sums));
         }
-        assert_eq!(try_map(9, |i| if i == 5 { Err(i) } else { Ok(i) }), Err(5));
+        let fifth = |i| if i == 5 { Err(i) } else { Ok(()) };
+        assert_eq!(try_map(9, fifth), Err(5));
+        assert_eq!(try_for_each_chunk(&mut [0; 9], 1, |i, _| fifth(i)), Err(5));
     }
 }

@@ -21,7 +21,7 @@ use super::lut::{
 };
 use super::prepared::Prepared;
 use crate::atmosphere::{Atmosphere, AtmosphereError};
-use crate::control::Control;
+use crate::control::{Cancelled, Control};
 use crate::debug::debug_fields;
 use crate::scene::{Capabilities, Input, PreparedModel, RadianceModel, ResolvedScene, SceneError};
 use crate::sky::{LineOfSight, Scattering, SunCoverage};
@@ -94,6 +94,9 @@ pub enum HillaireError {
     /// The atmosphere is invalid.
     #[error(transparent)]
     Atmosphere(#[from] AtmosphereError),
+    /// The caller cancelled the computation.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// The sky for one eye and one sun.
@@ -152,7 +155,7 @@ impl Hillaire2020 {
         sun_direction: DVec3,
         settings: &Settings,
     ) -> Result<Self, HillaireError> {
-        let tables = Tables::new(atmosphere, grid, settings)?;
+        let tables = Tables::new(atmosphere, grid, settings, Control::default())?;
         let sun = SunState {
             direction: sun_direction,
             distance_ratio: 1.0,
@@ -290,6 +293,7 @@ impl Tables {
         atmosphere: &Atmosphere,
         grid: &WavelengthGrid,
         settings: &Settings,
+        control: Control<'_>,
     ) -> Result<Self, HillaireError> {
         atmosphere.validate()?;
         let multiple_fits = settings.multiple.is_none_or(|m| {
@@ -308,7 +312,8 @@ impl Tables {
             air.transmittance_table(settings.transmittance_size, settings.transmittance_steps);
         let multiple = settings
             .multiple
-            .map(|m| MultipleScatteringTable::new(&air, &transmittance, &m));
+            .map(|m| MultipleScatteringTable::new(&air, &transmittance, &m, control))
+            .transpose()?;
         Ok(Self {
             grid,
             air,
@@ -360,10 +365,13 @@ impl RadianceModel for Hillaire2020Model {
         &self,
         scene: &ResolvedScene,
         _suns: SunCoverage,
-        _control: Control<'_>,
+        control: Control<'_>,
     ) -> Result<Arc<dyn PreparedModel>, SceneError> {
         let name = self.name();
-        let refused = move |error| SceneError::model(name, error);
+        let refused = move |error| match error {
+            HillaireError::Cancelled(cancelled) => cancelled.into(),
+            error => SceneError::model(name, error),
+        };
         let mut settings = Settings::default();
         if scene.solver.scattering == Some(Scattering::Single) {
             settings.multiple = None;
@@ -371,10 +379,10 @@ impl RadianceModel for Hillaire2020Model {
         if scene.solver.variant.as_deref() == Some(VARIANTS[1]) {
             settings.steps = EVEN_STEPS;
         }
-        let tables = Tables::new(&scene.atmosphere, &scene.grid, &settings).map_err(refused)?;
-        let tables = Arc::new(tables);
+        let tables = Tables::new(&scene.atmosphere, &scene.grid, &settings, control);
+        let tables = Arc::new(tables.map_err(refused)?);
         let grid = Some(tables.grid.clone());
-        let prepared = Prepared::new(name, scene, grid, move |altitude_m, sun| {
+        let prepared = Prepared::new(name, scene, grid, move |altitude_m, sun, _| {
             let sky = Hillaire2020::of(tables.clone(), altitude_m, sun);
             Ok(Arc::new(sky.map_err(refused)?))
         });

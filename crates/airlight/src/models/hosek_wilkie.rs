@@ -149,7 +149,7 @@ impl RadianceModel for HosekWilkieModel {
         let (name, turbidity) = (self.name(), turbidity(&scene.atmosphere));
         let albedo = &scene.atmosphere.planet.ground_albedo;
         let albedo = DOMINANT_NM.map(|nm| albedo.at(nm));
-        let prepared = Prepared::new(name, scene, None, move |_, sun| {
+        let prepared = Prepared::new(name, scene, None, move |_, sun, _| {
             let sky = HosekWilkie::new(turbidity, albedo, sun.direction);
             Ok(Arc::new(
                 sky.map_err(|error| SceneError::model(name, error))?,

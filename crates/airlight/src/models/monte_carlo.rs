@@ -2,7 +2,7 @@
 
 use super::orders::PreparedOrders;
 use crate::atmosphere::Atmosphere;
-use crate::control::Control;
+use crate::control::{Cancelled, Control};
 use crate::math::parallel;
 use crate::monte_carlo::{
     Estimate, MonteCarlo, MonteCarloSettings, ORDERS, PolarisedEstimate, SunShape,
@@ -84,7 +84,7 @@ impl RadianceModel for MonteCarloModel {
         let mut atmosphere = scene.atmosphere.clone();
         let ground_m = atmosphere.planet.ground_altitude_m;
         if let Some(fog) = &scene.fog {
-            let layers = fog.in_air(ground_m, scene.grid.wavelengths_nm())?;
+            let layers = fog.in_air(ground_m, scene.grid.wavelengths_nm(), control)?;
             atmosphere.constituents.extend(layers);
         }
         // Check the air before solving for the preview.
@@ -127,15 +127,16 @@ impl PreparedModel for PreparedMonteCarlo {
         self.preview.grid()
     }
 
-    fn view(
+    fn view_with(
         &self,
         observer_altitude_m: f64,
         sun: &SunState,
         channels: Channels,
+        control: Control<'_>,
     ) -> Result<Arc<dyn RadianceView>, SceneError> {
         let preview = self
             .preview
-            .solved_view(observer_altitude_m, sun, channels)?;
+            .solved_view(observer_altitude_m, sun, channels, control)?;
         let grid = preview.sky_view().sky().grid();
         let air = self.atmosphere.under(sun);
         let weights = match channels {
@@ -219,19 +220,28 @@ impl RadianceView for MonteCarloView {
 
     /// Mean over all paths of each direction.
     fn radiance(&self, directions: &[DVec3], out: &mut [f32]) {
+        self.radiance_with(directions, out, Control::default())
+            .expect("nothing cancels it");
+    }
+
+    fn radiance_with(
+        &self,
+        directions: &[DVec3],
+        out: &mut [f32],
+        control: Control<'_>,
+    ) -> Result<(), Cancelled> {
         let count = self.channel_count();
-        parallel::for_each_chunk(out, count, |i, out| {
+        parallel::try_for_each_chunk(out, count, |i, out| {
             let mut sum = vec![0.0; count];
             if directions[i] != DVec3::ZERO {
-                self.put(
-                    self.estimate(directions[i], None).mean.into_iter(),
-                    &mut sum,
-                );
+                let estimate = self.estimate_with(directions[i], None, control)?;
+                self.put(estimate.mean.into_iter(), &mut sum);
             }
             out.iter_mut()
                 .zip(sum)
                 .for_each(|(out, sum)| *out = sum as f32);
-        });
+            Ok(())
+        })
     }
 
     fn sun_disc(&self, directions: &[DVec3], out: &mut [f32]) {
@@ -262,17 +272,30 @@ impl RadianceView for MonteCarloView {
         transmittance: &mut [f32],
         path_radiance: &mut [f32],
     ) {
+        let out = (transmittance, path_radiance);
+        self.path_with(direction, distance_m, out, Control::default())
+            .expect("nothing cancels it");
+    }
+
+    fn path_with(
+        &self,
+        direction: DVec3,
+        distance_m: f64,
+        (transmittance, path_radiance): (&mut [f32], &mut [f32]),
+        control: Control<'_>,
+    ) -> Result<(), Cancelled> {
         self.preview
             .path(direction, distance_m, transmittance, path_radiance);
         if distance_m.is_finite() {
             let mut sum = vec![0.0; path_radiance.len()];
-            let estimate = self.estimate(direction, Some(distance_m));
+            let estimate = self.estimate_with(direction, Some(distance_m), control)?;
             self.put(estimate.mean.into_iter(), &mut sum);
             path_radiance
                 .iter_mut()
                 .zip(sum)
                 .for_each(|(out, sum)| *out = sum as f32);
         }
+        Ok(())
     }
 
     fn line_of_sight(&self, direction: DVec3, limit_m: Option<f64>) -> Option<LineOfSight> {
@@ -323,25 +346,38 @@ impl RadianceSampler for MonteCarloView {
         self.put(intensity.into_iter(), sum);
     }
 
-    fn estimate(&self, direction: DVec3, limit_m: Option<f64>) -> Estimate {
+    fn estimate_with(
+        &self,
+        direction: DVec3,
+        limit_m: Option<f64>,
+        control: Control<'_>,
+    ) -> Result<Estimate, Cancelled> {
         if self.polarised {
-            return self.polarised_estimate(direction, limit_m).radiance();
+            let polarised = self.polarised_estimate_with(direction, limit_m, control)?;
+            return Ok(polarised.radiance());
         }
         let (eye_m, sun) = (self.eye_altitude_m, RadianceView::sun(self));
+        let paths = &self.paths;
         let found = match self.limit_before_ground(direction, limit_m) {
-            Some(limit_m) => self.paths.path_radiance(eye_m, sun, direction, limit_m),
-            None => self.paths.radiance(eye_m, sun, direction),
+            Some(limit_m) => paths.path_radiance_with(eye_m, sun, direction, limit_m, control)?,
+            None => paths.radiance_with(eye_m, sun, direction, control)?,
         };
-        match self.orders {
+        Ok(match self.orders {
             1 => found.first_order(),
             _ => found,
-        }
+        })
     }
 
-    fn polarised_estimate(&self, direction: DVec3, limit_m: Option<f64>) -> PolarisedEstimate {
+    fn polarised_estimate_with(
+        &self,
+        direction: DVec3,
+        limit_m: Option<f64>,
+        control: Control<'_>,
+    ) -> Result<PolarisedEstimate, Cancelled> {
         let (eye_m, sun) = (self.eye_altitude_m, RadianceView::sun(self));
         let limit_m = self.limit_before_ground(direction, limit_m);
-        self.paths.polarised(eye_m, sun, direction, limit_m)
+        self.paths
+            .polarised_with(eye_m, sun, direction, limit_m, control)
     }
 
     fn preview(&self) -> Arc<dyn RadianceView> {

@@ -111,9 +111,10 @@ impl PreparedOrders {
         observer_altitude_m: f64,
         sun: &SunState,
         channels: Channels,
+        control: Control<'_>,
     ) -> Result<SolvedView, SceneError> {
-        let view = self.sky.try_view(observer_altitude_m, *sun)?;
-        SolvedView::new(view, self.fog.as_ref(), channels)
+        let view = self.sky.view_with(observer_altitude_m, *sun, control)?;
+        SolvedView::new(view, self.fog.as_ref(), channels, control)
     }
 }
 
@@ -122,32 +123,35 @@ impl PreparedModel for PreparedOrders {
         Some(self.sky.grid())
     }
 
-    fn view(
+    fn view_with(
         &self,
         observer_altitude_m: f64,
         sun: &SunState,
         channels: Channels,
+        control: Control<'_>,
     ) -> Result<Arc<dyn RadianceView>, SceneError> {
         Ok(Arc::new(self.solved_view(
             observer_altitude_m,
             sun,
             channels,
+            control,
         )?))
     }
 
-    fn night_view(
+    fn night_view_with(
         &self,
         observer_altitude_m: f64,
         sun: &SunState,
         night: &NightState,
         channels: Channels,
+        control: Control<'_>,
     ) -> Result<Arc<dyn RadianceView>, SceneError> {
         match &self.night {
             Some(lights) => {
-                let sunlit = self.sky.try_view(observer_altitude_m, *sun)?;
-                Ok(Arc::new(lights.view(sunlit, night, channels)?))
+                let sunlit = self.sky.view_with(observer_altitude_m, *sun, control)?;
+                Ok(Arc::new(lights.view(sunlit, night, channels, control)?))
             }
-            None => self.view(observer_altitude_m, sun, channels),
+            None => self.view_with(observer_altitude_m, sun, channels, control),
         }
     }
 

@@ -4,6 +4,7 @@ use super::PublishedModel;
 use super::published_view::PublishedView;
 use crate::atmosphere::turbidity_of_optical_depth;
 use crate::atmosphere::{Atmosphere, ConstituentKind};
+use crate::control::Control;
 use crate::scene::{Channels, PreparedModel, RadianceView, ResolvedScene, SceneError, SunState};
 use crate::spectrum::{SpectralCurve, WavelengthGrid};
 use std::fmt;
@@ -22,7 +23,10 @@ pub(super) struct Prepared<F> {
 
 impl<F> Prepared<F>
 where
-    F: Fn(f64, &SunState) -> Result<Arc<dyn PublishedModel>, SceneError> + Send + Sync + 'static,
+    F: Fn(f64, &SunState, Control<'_>) -> Result<Arc<dyn PublishedModel>, SceneError>
+        + Send
+        + Sync
+        + 'static,
 {
     /// A model with spectra at the wavelengths of `grid`, or with colours only for `None`.
     pub fn new(
@@ -51,7 +55,10 @@ where
 
 impl<F> PreparedModel for Prepared<F>
 where
-    F: Fn(f64, &SunState) -> Result<Arc<dyn PublishedModel>, SceneError> + Send + Sync + 'static,
+    F: Fn(f64, &SunState, Control<'_>) -> Result<Arc<dyn PublishedModel>, SceneError>
+        + Send
+        + Sync
+        + 'static,
 {
     fn grid(&self) -> Option<&WavelengthGrid> {
         self.grid.as_ref()
@@ -64,13 +71,14 @@ where
         }
     }
 
-    fn view(
+    fn view_with(
         &self,
         observer_altitude_m: f64,
         sun: &SunState,
         channels: Channels,
+        control: Control<'_>,
     ) -> Result<Arc<dyn RadianceView>, SceneError> {
-        let model = (self.make)(observer_altitude_m, sun)?;
+        let model = (self.make)(observer_altitude_m, sun, control)?;
         Ok(Arc::new(PublishedView::new(
             self.name,
             model,

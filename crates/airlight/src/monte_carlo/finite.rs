@@ -3,6 +3,7 @@
 use super::chord::{Chord, HalfLine};
 use super::estimate::Estimate;
 use super::solver::MonteCarlo;
+use crate::control::{Cancelled, Control};
 use glam::DVec3;
 
 impl MonteCarlo {
@@ -18,7 +19,24 @@ impl MonteCarlo {
         view: DVec3,
         distance_m: f64,
     ) -> Estimate {
-        self.mean_over_paths(self.scene(eye_altitude_m, sun, view, Some(distance_m)))
+        self.path_radiance_with(eye_altitude_m, sun, view, distance_m, Control::default())
+            .expect("nothing cancels it")
+    }
+
+    /// As [`MonteCarlo::path_radiance`], with cancellation.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn path_radiance_with(
+        &self,
+        eye_altitude_m: f64,
+        sun: DVec3,
+        view: DVec3,
+        distance_m: f64,
+        control: Control<'_>,
+    ) -> Result<Estimate, Cancelled> {
+        let scene = self.scene(eye_altitude_m, sun, view, Some(distance_m));
+        self.mean_over_paths(scene, control)
     }
 
     /// Path radiance from one bundle of paths, as [`MonteCarlo::sample`] for the whole ray.

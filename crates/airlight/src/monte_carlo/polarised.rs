@@ -3,6 +3,7 @@
 use super::estimate::{Estimate, Measured, Sample, Tally};
 use super::solver::{BUNDLE, MonteCarlo, Scene};
 use super::stokes::Stokes;
+use crate::control::{Cancelled, Control};
 use crate::math::parallel;
 use crate::optics::plane_of_polarisation_deg;
 use glam::DVec3;
@@ -61,12 +62,29 @@ impl MonteCarlo {
         view: DVec3,
         distance_m: Option<f64>,
     ) -> PolarisedEstimate {
+        self.polarised_with(eye_altitude_m, sun, view, distance_m, Control::default())
+            .expect("nothing cancels it")
+    }
+
+    /// As [`MonteCarlo::polarised`], with cancellation.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn polarised_with(
+        &self,
+        eye_altitude_m: f64,
+        sun: DVec3,
+        view: DVec3,
+        distance_m: Option<f64>,
+        control: Control<'_>,
+    ) -> Result<PolarisedEstimate, Cancelled> {
         let bundles = self.settings().paths.div_ceil(BUNDLE as u64).max(2);
         let scene = self.scene(eye_altitude_m, sun, view, distance_m);
-        let samples = parallel::map(bundles as usize, |bundle| {
-            self.polarised_bundle(scene, bundle as u64)
-        });
-        PolarisedEstimate::of(&samples, self.grid().len())
+        let samples = parallel::try_map(bundles as usize, |bundle| {
+            control.check()?;
+            Ok(self.polarised_bundle(scene, bundle as u64))
+        })?;
+        Ok(PolarisedEstimate::of(&samples, self.grid().len()))
     }
 
     /// Result of one bundle of paths, as [`MonteCarlo::sample`].

@@ -8,6 +8,7 @@ use super::path::{Line, ORDERS, PathScene};
 use super::stokes::{Polarisation, Scalar};
 use super::sun::SunShape;
 use crate::atmosphere::Atmosphere;
+use crate::control::{Cancelled, Control};
 use crate::math::parallel;
 use crate::math::random::Random;
 use crate::math::simd::vectorized;
@@ -126,7 +127,22 @@ impl MonteCarlo {
     /// Radiance at `eye_altitude_m` (m; raised to the ground if below it) along `view`, with the sun in the direction `sun` at
     /// the planet's mean distance (unit vectors in world axes, [`crate::axes`]).
     pub fn radiance(&self, eye_altitude_m: f64, sun: DVec3, view: DVec3) -> Estimate {
-        self.mean_over_paths(self.scene(eye_altitude_m, sun, view, None))
+        self.radiance_with(eye_altitude_m, sun, view, Control::default())
+            .expect("nothing cancels it")
+    }
+
+    /// As [`MonteCarlo::radiance`], with cancellation.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn radiance_with(
+        &self,
+        eye_altitude_m: f64,
+        sun: DVec3,
+        view: DVec3,
+        control: Control<'_>,
+    ) -> Result<Estimate, Cancelled> {
+        self.mean_over_paths(self.scene(eye_altitude_m, sun, view, None), control)
     }
 
     /// Mean over one bundle of 64 paths, by order of scattering and wavelength, W m^-2 sr^-1 nm^-1, for custom statistics.
@@ -159,7 +175,8 @@ impl MonteCarlo {
         let mut tally = Tally::new(self.grid.len());
         let mut bundles = 32;
         loop {
-            self.add_bundles(&mut tally, bundles, scene);
+            self.add_bundles(&mut tally, bundles, scene, Control::default())
+                .expect("nothing cancels it");
             let estimate = self.estimate(&tally);
             if estimate.worst_relative_error() <= relative_error || estimate.paths >= most_paths {
                 return estimate;
@@ -175,11 +192,18 @@ impl MonteCarlo {
     }
 
     /// Mean over the number of paths in the settings; 0 for a ray that misses the atmosphere.
-    pub(super) fn mean_over_paths(&self, scene: Option<Scene>) -> Estimate {
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn mean_over_paths(
+        &self,
+        scene: Option<Scene>,
+        control: Control<'_>,
+    ) -> Result<Estimate, Cancelled> {
         let bundles = self.settings.paths.div_ceil(BUNDLE as u64).max(2);
         let mut tally = Tally::new(self.grid.len());
-        self.add_bundles(&mut tally, bundles, scene);
-        self.estimate(&tally)
+        self.add_bundles(&mut tally, bundles, scene, control)?;
+        Ok(self.estimate(&tally))
     }
 
     /// Mean over a bundle, multiplied by the solar irradiance.
@@ -197,17 +221,28 @@ impl MonteCarlo {
     }
 
     /// Adds the next `bundles` bundles of a view ray to its tally, in order.
-    fn add_bundles(&self, tally: &mut Tally, bundles: u64, scene: Option<Scene>) {
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn add_bundles(
+        &self,
+        tally: &mut Tally,
+        bundles: u64,
+        scene: Option<Scene>,
+        control: Control<'_>,
+    ) -> Result<(), Cancelled> {
         let Some(scene) = scene else {
             let nothing = std::array::from_fn(|_| vec![0.0; self.grid.len()]);
             (0..bundles).for_each(|_| tally.add(&nothing));
-            return;
+            return Ok(());
         };
         let first = tally.count();
-        let samples = parallel::map(bundles as usize, |bundle| {
-            self.bundle(&scene, first + bundle as u64)
-        });
+        let samples = parallel::try_map(bundles as usize, |bundle| {
+            control.check()?;
+            Ok(self.bundle(&scene, first + bundle as u64))
+        })?;
         samples.iter().for_each(|sample| tally.add(sample));
+        Ok(())
     }
 
     /// View ray from its entry into the atmosphere, at most `reach_m` long from the eye; `None` if it misses the atmosphere.

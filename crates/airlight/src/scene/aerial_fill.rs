@@ -3,6 +3,7 @@
 use super::aerial::{AZIMUTHS, AerialPerspective, DISTANCES, Eye, Half, ROWS, part_of};
 use super::error::SceneError;
 use super::lane_channels::{Converter, LaneChannels};
+use crate::control::{Cancelled, Control};
 use crate::math::parallel;
 use crate::sky::{Peaked, View};
 use glam::DVec3;
@@ -18,13 +19,18 @@ impl<const N: usize> AerialPerspective<N> {
     /// Distances are clamped to the limit and to the ground.
     ///
     /// # Errors
-    /// [`SceneError`] if N lanes cannot be these channels, or for a limit that is not a positive distance.
-    pub fn new(view: &View, channels: LaneChannels, limit_m: f64) -> Result<Self, SceneError> {
+    /// [`SceneError`] if N lanes cannot be these channels, for a limit that is not a positive distance, and if the caller cancelled.
+    pub fn new(
+        view: &View,
+        channels: LaneChannels,
+        limit_m: f64,
+        control: Control<'_>,
+    ) -> Result<Self, SceneError> {
         if limit_m.is_nan() || limit_m <= 0.0 {
             return Err(SceneError::Distance(limit_m));
         }
         let converter = Converter::new(view, channels)?;
-        Ok(tabulated(view, &converter, limit_m))
+        Ok(tabulated(view, &converter, limit_m, control)?)
     }
 }
 
@@ -33,7 +39,8 @@ fn tabulated<const N: usize>(
     view: &View,
     converter: &Converter<N>,
     limit_m: f64,
-) -> AerialPerspective<N> {
+    control: Control<'_>,
+) -> Result<AerialPerspective<N>, Cancelled> {
     let peaked = Peaked::of(view, N, |spectrum| {
         converter
             .radiance(spectrum)
@@ -66,36 +73,37 @@ fn tabulated<const N: usize>(
     let half = |below: bool| {
         let span = if below { -FRAC_PI_2 } else { ceiling } - eye.horizon_elevation;
         let rows = ROWS[usize::from(below)];
-        let filled = parallel::map(rows, |row| {
+        let filled = parallel::try_map(rows, |row| {
+            control.check()?;
             let x = row as f64 / (rows - 1) as f64;
             // Values are discontinuous at the horizon: start just beside it.
             let elevation = eye.horizon_elevation + span * (x * x).max(1e-9);
-            row_of(
+            Ok(row_of(
                 view,
                 converter,
                 &peaked,
                 &eye,
                 sun_azimuth,
                 (elevation, below),
-            )
-        });
+            ))
+        })?;
         let (extinction, source): (Vec<_>, Vec<_>) = filled.into_iter().unzip();
-        Half {
+        Ok(Half {
             below,
             span,
             rows,
             extinction: extinction.concat(),
             source: source.concat(),
-        }
+        })
     };
-    AerialPerspective {
+    Ok(AerialPerspective {
         sun: view.sun(),
         sun_azimuth,
         eye,
-        above: half(false),
-        below: half(true),
+        above: half(false)?,
+        below: half(true)?,
         peaked: peaked.into(),
-    }
+    })
 }
 
 /// One row: mean extinctions by distance, and mean source functions by azimuth and distance.

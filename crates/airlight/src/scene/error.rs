@@ -4,6 +4,7 @@ use super::input::Input;
 use crate::atmosphere::AtmosphereError;
 #[cfg(feature = "config")]
 use crate::atmosphere::ConfigError;
+use crate::control::Cancelled;
 use crate::fog::FogError;
 use crate::names::UnknownName;
 use crate::optics::mie::MieError;
@@ -126,6 +127,9 @@ pub enum SceneError {
     /// An error of the sky solver.
     #[error(transparent)]
     Sky(#[from] SkyError),
+    /// The caller cancelled the computation.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 impl SceneError {
@@ -162,7 +166,13 @@ impl SceneError {
 
     /// Whether the caller cancelled the computation.
     pub fn is_cancelled(&self) -> bool {
-        matches!(self, Self::Sky(SkyError::Cancelled(_)))
+        matches!(
+            self,
+            Self::Cancelled(_)
+                | Self::Sky(SkyError::Cancelled(_))
+                | Self::Fog(FogError::Cancelled(_))
+                | Self::Droplets(MieError::Cancelled(_))
+        )
     }
 
     /// The scene key that caused the error, such as `air.ozone_du`, if it is a single key.

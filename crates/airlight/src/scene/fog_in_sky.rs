@@ -4,6 +4,7 @@ use super::foggy::FoggySky;
 use super::lane_channels::LaneChannels;
 use super::light::LitSky;
 use super::{Channels, FogLayers, SceneError};
+use crate::control::Control;
 use crate::fog::{FogScattering, PatchView};
 use crate::sky::SkyTable;
 use crate::spectrum::{Spectrum, WavelengthGrid};
@@ -36,21 +37,27 @@ impl FogInSky {
         fog: Option<&FogLayers>,
         sky: LitSky<'_>,
         channels: Channels,
+        control: Control<'_>,
     ) -> Result<Self, SceneError> {
         let view = sky.view;
         let ground = FoggySky::<3>::round_ground(view);
         let scattering = fog.map_or(FogScattering::Single, |fog| fog.scattering);
-        let layers = |nm: &[f64]| fog.map_or(Ok(Vec::new()), |fog| fog.constituents(nm));
+        let layers = |nm: &[f64]| match fog {
+            Some(fog) => fog.constituents_with(nm, control),
+            None => Ok(Vec::new()),
+        };
         let in_channels = match channels {
             Channels::Rgb(space) => {
                 let layers = layers(WavelengthGrid::standard().wavelengths_nm())?;
                 let channels = LaneChannels::Rgb(space);
-                let sky = FoggySky::new(sky, channels, &layers, ground, scattering)?;
+                let sky = FoggySky::new(sky, channels, &layers, ground, scattering, control)?;
                 InChannels::Rgb(Box::new(sky))
             }
             Channels::Spectral => {
                 let layers = layers(view.sky().grid().wavelengths_nm())?;
-                InChannels::Spectral(FoggySky::spectral(sky, &layers, ground, scattering)?)
+                InChannels::Spectral(FoggySky::spectral(
+                    sky, &layers, ground, scattering, control,
+                )?)
             }
         };
         let patches = match fog {

@@ -3,6 +3,7 @@
 use super::{FogLayerSpec, FogPatchesSpec, FogSpec, SceneError};
 use crate::atmosphere::visibility::{Contrast, extinction_per_m};
 use crate::atmosphere::{Constituent, DensityProfile};
+use crate::control::Control;
 use crate::fog::droplets::DropletKind;
 use crate::fog::{FogPatches, FogScattering, PatchField, PatchView};
 use crate::sky::View;
@@ -36,9 +37,21 @@ impl FogLayers {
     /// # Errors
     /// [`SceneError`] for an invalid profile or invalid droplets.
     pub fn constituents(&self, wavelengths_nm: &[f64]) -> Result<Vec<Constituent>, SceneError> {
+        self.constituents_with(wavelengths_nm, Control::default())
+    }
+
+    /// As [`Self::constituents`], with cancellation.
+    ///
+    /// # Errors
+    /// As [`Self::constituents`], and if the caller cancelled.
+    pub fn constituents_with(
+        &self,
+        wavelengths_nm: &[f64],
+        control: Control<'_>,
+    ) -> Result<Vec<Constituent>, SceneError> {
         let layers = self.layers.iter();
         layers
-            .map(|layer| layer.constituent(wavelengths_nm))
+            .map(|layer| layer.constituent_with(wavelengths_nm, control))
             .collect()
     }
 
@@ -88,6 +101,7 @@ impl FogLayers {
         &self,
         ground_altitude_m: f64,
         wavelengths_nm: &[f64],
+        control: Control<'_>,
     ) -> Result<Vec<Constituent>, SceneError> {
         let endless = || {
             SceneError::value(
@@ -97,7 +111,7 @@ impl FogLayers {
                 "height, clamped, unclamped or slab",
             )
         };
-        let layers = self.constituents(wavelengths_nm)?.into_iter();
+        let layers = self.constituents_with(wavelengths_nm, control)?.into_iter();
         layers
             .map(|layer| match layer.density.is_uniform() {
                 true => Err(endless()),
@@ -113,16 +127,29 @@ impl FogLayer {
     /// # Errors
     /// [`SceneError`] for an invalid profile or invalid droplets.
     pub fn constituent(&self, wavelengths_nm: &[f64]) -> Result<Constituent, SceneError> {
+        self.constituent_with(wavelengths_nm, Control::default())
+    }
+
+    /// As [`Self::constituent`], with cancellation of the computation of published droplets.
+    ///
+    /// # Errors
+    /// As [`Self::constituent`], and if the caller cancelled.
+    pub fn constituent_with(
+        &self,
+        wavelengths_nm: &[f64],
+        control: Control<'_>,
+    ) -> Result<Constituent, SceneError> {
         self.profile
             .validate()
             .map_err(|error| SceneError::refused("fog", error))?;
         let profile = self.profile.clone();
         let (extinction, droplets) = (self.extinction_per_m, self.droplets);
-        Ok(Constituent::fog(
+        Ok(Constituent::fog_with(
             extinction,
             droplets,
             profile,
             wavelengths_nm,
+            control,
         )?)
     }
 }

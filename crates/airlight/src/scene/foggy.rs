@@ -6,6 +6,7 @@ use super::lane_channels::{Converter, LaneChannels};
 use super::light::{self, LitSky, TopLight};
 use super::places;
 use crate::atmosphere::{Constituent, RaySegment};
+use crate::control::Control;
 use crate::debug::debug_fields;
 use crate::fog::{FogLanes, FogLighting, FogScattering, Ground, LayerLanes};
 use crate::sky::{SkyTable, TableChannels, View};
@@ -59,7 +60,8 @@ fn top_view<const N: usize>(
         ground_albedo: Spectrum::ZERO,
     };
     // Validates the layers without solving for light.
-    FogLanes::new(layers, ground, unlit, FogScattering::Single, N)?;
+    let control = Control::default();
+    FogLanes::new(layers, ground, unlit, FogScattering::Single, N, control)?;
     let ground_m = view.sky().atmosphere().planet.ground_altitude_m;
     Ok(view.at_altitude(ground_m + light::top_m(layers, &ground) - ground.height_m)?)
 }
@@ -69,13 +71,14 @@ impl<const N: usize> FoggySky<N> {
     /// fog's ground as the view's eye above its own ground. See [`FoggySky::round_ground`].
     ///
     /// # Errors
-    /// [`SceneError`] if N lanes cannot hold these channels, or for an invalid fog.
+    /// [`SceneError`] if N lanes cannot hold these channels, for an invalid fog, and if the caller cancelled.
     pub fn new<'a>(
         sky: impl Into<LitSky<'a>>,
         channels: LaneChannels,
         layers: &[Constituent],
         ground: Ground,
         scattering: FogScattering,
+        control: Control<'_>,
     ) -> Result<Self, SceneError> {
         let sky = sky.into();
         let view = sky.view;
@@ -87,21 +90,23 @@ impl<const N: usize> FoggySky<N> {
         let converter = Converter::<N>::new(view, channels)?;
         let layers = converter.layers(layers)?;
         let shared = SharedSky {
-            top: Arc::new(TopLight::of(&top_view(view, &layers, ground)?)),
-            clear: Arc::new(view.table(table)),
+            top: Arc::new(TopLight::of(&top_view(view, &layers, ground)?, control)?),
+            clear: Arc::new(view.table_with(table, control)?),
         };
-        Self::among(sky, channels, &layers, ground, scattering, &shared)
+        let fog = (&layers[..], ground, scattering);
+        Self::among(sky, channels, fog, &shared, control)
     }
 
     /// The same at all wavelengths of the sky's grid, in blocks of N (lanes beyond the last wavelength repeat it).
     ///
     /// # Errors
-    /// [`SceneError`] for invalid layers.
+    /// [`SceneError`] for invalid layers, and if the caller cancelled.
     pub fn spectral<'a>(
         sky: impl Into<LitSky<'a>>,
         layers: &[Constituent],
         ground: Ground,
         scattering: FogScattering,
+        control: Control<'_>,
     ) -> Result<Vec<Self>, SceneError> {
         let sky = sky.into();
         let view = sky.view;
@@ -113,13 +118,12 @@ impl<const N: usize> FoggySky<N> {
             let shared = match &shared {
                 Some(known) => known,
                 None => shared.insert(SharedSky {
-                    top: Arc::new(TopLight::of(&top_view(view, &layers, ground)?)),
-                    clear: Arc::new(view.table(TableChannels::Spectral)),
+                    top: Arc::new(TopLight::of(&top_view(view, &layers, ground)?, control)?),
+                    clear: Arc::new(view.table_with(TableChannels::Spectral, control)?),
                 }),
             };
-            pieces.push(Self::among(
-                sky, channels, &layers, ground, scattering, shared,
-            )?);
+            let fog = (&layers[..], ground, scattering);
+            pieces.push(Self::among(sky, channels, fog, shared, control)?);
         }
         Ok(pieces)
     }
@@ -127,21 +131,22 @@ impl<const N: usize> FoggySky<N> {
     fn among(
         sky: LitSky<'_>,
         channels: LaneChannels,
-        layers: &[LayerLanes<N>],
-        ground: Ground,
-        scattering: FogScattering,
+        (layers, ground, scattering): (&[LayerLanes<N>], Ground, FogScattering),
         shared: &SharedSky,
+        control: Control<'_>,
     ) -> Result<Self, SceneError> {
         let view = sky.view;
         let converter = Converter::new(view, channels)?;
         let top = shared.top.clone();
         let glow = sky.glow_lanes(converter.used().start);
         let light = top.on_fog(view, &converter, scattering, glow);
-        let fog = FogLanes::new(layers, ground, light, scattering, converter.used().len())?;
+        let lanes = converter.used().len();
+        let fog = FogLanes::new(layers, ground, light, scattering, lanes, control)?;
+        let aerial = AerialPerspective::new(view, channels, f64::INFINITY, control)?;
         Ok(Self {
             clear: shared.clear.clone(),
             first: converter.used().start,
-            aerial: Arc::new(AerialPerspective::new(view, channels, f64::INFINITY)?),
+            aerial: Arc::new(aerial),
             top,
             glow,
             eye_height_m: view.radius_m() - view.bounds_m().0 + ground.height_m,
@@ -156,22 +161,23 @@ impl<const N: usize> FoggySky<N> {
     /// on it if its top is equally high.
     ///
     /// # Errors
-    /// [`SceneError`] for an invalid fog.
+    /// [`SceneError`] for an invalid fog, and if the caller cancelled.
     pub fn with_fog(
         &self,
         layers: &[Constituent],
         scattering: FogScattering,
+        control: Control<'_>,
     ) -> Result<Self, SceneError> {
         let ground = *self.fog.ground();
         let layers = self.converter.layers(layers)?;
         let above = top_view(&self.view, &layers, ground)?;
         let top = match self.top.radius_m() == above.radius_m() {
             true => self.top.clone(),
-            false => Arc::new(TopLight::of(&above)),
+            false => Arc::new(TopLight::of(&above, control)?),
         };
         let light = top.on_fog(&self.view, &self.converter, scattering, self.glow);
         let lanes = self.converter.used().len();
-        let fog = FogLanes::new(&layers, ground, light, scattering, lanes)?;
+        let fog = FogLanes::new(&layers, ground, light, scattering, lanes, control)?;
         Ok(Self {
             view: self.view.clone(),
             converter: self.converter.clone(),

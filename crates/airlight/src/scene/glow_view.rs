@@ -6,6 +6,7 @@ use super::fog_in_sky::FogInSky;
 use super::irradiance_map::{IrradianceMap, horizontal_irradiance_of};
 use super::model::StarField;
 use crate::axes;
+use crate::control::{Cancelled, Control};
 use crate::debug::debug_fields;
 use crate::math::parallel;
 use crate::math::quadrature::GaussRule;
@@ -66,8 +67,11 @@ pub(super) struct RingScattering {
 
 impl RingScattering {
     /// The light for an eye at an altitude, m, in a sky that is solved for sources above the horizon.
-    pub fn new(sky: &Sky, altitude_m: f64) -> Self {
-        let eye = sky.view(altitude_m, DVec3::Y);
+    ///
+    /// # Errors
+    /// [`SkyError::NotConverged`]; [`SkyError::Cancelled`].
+    pub fn new(sky: &Sky, altitude_m: f64, control: Control<'_>) -> Result<Self, SkyError> {
+        let eye = sky.view_with(altitude_m, DVec3::Y, control)?;
         let above_and_below = elevations(horizon_rad(&eye));
         let (above, below) = above_and_below.split_at(ABOVE);
         let elevations: Vec<f64> = above
@@ -76,14 +80,15 @@ impl RingScattering {
             .chain(below.iter().step_by(2))
             .copied()
             .collect();
-        let rings: Vec<(View, f64)> = ring_sines()
-            .map(|(sine, share)| {
-                let source = axes::direction(0.0, sine.asin().to_degrees());
-                (sky.view(altitude_m, source), 2.0 * PI * share)
-            })
-            .collect();
+        let rings = ring_sines().map(|(sine, share)| {
+            let source = axes::direction(0.0, sine.asin().to_degrees());
+            let view = sky.view_with(altitude_m, source, control)?;
+            Ok((view, 2.0 * PI * share))
+        });
+        let rings: Vec<(View, f64)> = rings.collect::<Result<_, SkyError>>()?;
         let solar = eye.solar_irradiance();
-        let scattered = parallel::map(elevations.len(), |i| {
+        let scattered = parallel::try_map(elevations.len(), |i| {
+            control.check()?;
             let under = |(view, solid_angle): &(View, f64)| {
                 let mut mean = vec![0.0; solar.len()];
                 for k in 0..AZIMUTHS {
@@ -96,12 +101,12 @@ impl RingScattering {
                 }
                 mean
             };
-            rings.iter().map(under).collect()
-        });
-        Self {
+            Ok::<_, Cancelled>(rings.iter().map(under).collect())
+        })?;
+        Ok(Self {
             altitude_m,
             scattered,
-        }
+        })
     }
 
     /// Altitude of the eye, m.
@@ -497,7 +502,7 @@ mod tests {
         let scene = scene.resolve().unwrap();
         let settings = scene.solver.sky_settings(SunCoverage::AboveHorizon);
         let sky = Sky::prepare(&scene.atmosphere, &scene.grid, &settings).unwrap();
-        let rings = RingScattering::new(&sky, 2.0);
+        let rings = RingScattering::new(&sky, 2.0, Control::default()).unwrap();
         let eye = sky.view(2.0, DVec3::Y);
         let solar = eye.solar_irradiance();
         let elevations = elevations(horizon_rad(&eye));

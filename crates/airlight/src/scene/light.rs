@@ -1,6 +1,7 @@
 //! Light of a sky at the top of a fog, and its fraction that reaches the ground below.
 
 use super::lane_channels::Converter;
+use crate::control::{Cancelled, Control};
 use crate::fog::{DirectionalLight, FogLanes, FogLighting, FogScattering, Ground, LayerLanes};
 use crate::sky::{TableChannels, View};
 use crate::spectrum::Spectrum;
@@ -52,16 +53,19 @@ pub(super) struct TopLight {
 
 impl TopLight {
     /// The light in a view from the fog's top.
-    pub fn of(top: &View) -> Self {
-        let table = top.table(TableChannels::Spectral);
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn of(top: &View, control: Control<'_>) -> Result<Self, Cancelled> {
+        let table = top.table_with(TableChannels::Spectral, control)?;
         let (down, up) = (table.irradiance(DVec3::Y), table.irradiance(-DVec3::Y));
         let mean = |(down, up): (&f32, &f32)| (0.5 * f64::from(down + up) / PI) as f32;
-        Self {
+        Ok(Self {
             radius_m: top.radius_m(),
             sun_irradiance: top.sun_irradiance(),
             mean_radiance: down.iter().zip(&up).map(mean).collect(),
             sky_radiance: down.iter().map(|e| (f64::from(*e) / PI) as f32).collect(),
-        }
+        })
     }
 
     /// Distance of the top from the planet's centre, m.

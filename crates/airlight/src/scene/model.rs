@@ -11,7 +11,7 @@
 //! each direction. All three traits are `Send + Sync + 'static`, so that implementations can be stored in an [`Arc`].
 
 use super::{Capabilities, Channels, FogLayers, ResolvedScene, SceneError};
-use crate::control::Control;
+use crate::control::{Cancelled, Control};
 use crate::monte_carlo::{Estimate, PolarisedEstimate};
 use crate::night::NightState;
 use crate::sky::{LineOfSight, PolarisationTable, PolarisedLight, SunCoverage};
@@ -64,6 +64,20 @@ pub trait PreparedModel: Debug + Send + Sync + 'static {
         observer_altitude_m: f64,
         sun: &SunState,
         channels: Channels,
+    ) -> Result<Arc<dyn RadianceView>, SceneError> {
+        self.view_with(observer_altitude_m, sun, channels, Control::default())
+    }
+
+    /// As [`PreparedModel::view`], with cancellation.
+    ///
+    /// # Errors
+    /// As [`PreparedModel::view`], and if the caller cancelled.
+    fn view_with(
+        &self,
+        observer_altitude_m: f64,
+        sun: &SunState,
+        channels: Channels,
+        control: Control<'_>,
     ) -> Result<Arc<dyn RadianceView>, SceneError>;
 
     /// As [`PreparedModel::view`], with the lights of the night. Models without
@@ -75,10 +89,26 @@ pub trait PreparedModel: Debug + Send + Sync + 'static {
         &self,
         observer_altitude_m: f64,
         sun: &SunState,
-        _night: &NightState,
+        night: &NightState,
         channels: Channels,
     ) -> Result<Arc<dyn RadianceView>, SceneError> {
-        self.view(observer_altitude_m, sun, channels)
+        let control = Control::default();
+        self.night_view_with(observer_altitude_m, sun, night, channels, control)
+    }
+
+    /// As [`PreparedModel::night_view`], with cancellation.
+    ///
+    /// # Errors
+    /// As [`PreparedModel::view_with`].
+    fn night_view_with(
+        &self,
+        observer_altitude_m: f64,
+        sun: &SunState,
+        _night: &NightState,
+        channels: Channels,
+        control: Control<'_>,
+    ) -> Result<Arc<dyn RadianceView>, SceneError> {
+        self.view_with(observer_altitude_m, sun, channels, control)
     }
 
     /// The same air with another fog, as if it had been prepared with it; `None` for models that cannot exchange their fog.
@@ -155,6 +185,21 @@ pub trait RadianceView: Debug + Send + Sync + 'static {
     /// some models reuse results of neighbours, within the tolerance that they document.
     fn radiance(&self, directions: &[DVec3], out: &mut [f32]);
 
+    /// As [`Self::radiance`], with cancellation, for views that take long for one direction.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn radiance_with(
+        &self,
+        directions: &[DVec3],
+        out: &mut [f32],
+        control: Control<'_>,
+    ) -> Result<(), Cancelled> {
+        control.check()?;
+        self.radiance(directions, out);
+        Ok(())
+    }
+
     /// A faster [`Self::radiance`] for pictures with constant azimuth in each column and constant elevation in each row;
     /// `azimuths_rad` are those of the columns, clockwise from north. `None` if the model has none.
     fn row_sampler(&self, _azimuths_rad: &[f64]) -> Option<Box<dyn RowSampler>> {
@@ -187,6 +232,22 @@ pub trait RadianceView: Debug + Send + Sync + 'static {
         transmittance: &mut [f32],
         path_radiance: &mut [f32],
     );
+
+    /// As [`Self::path`], with cancellation, for views that take long for one direction.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn path_with(
+        &self,
+        direction: DVec3,
+        distance_m: f64,
+        (transmittance, path_radiance): (&mut [f32], &mut [f32]),
+        control: Control<'_>,
+    ) -> Result<(), Cancelled> {
+        control.check()?;
+        self.path(direction, distance_m, transmittance, path_radiance);
+        Ok(())
+    }
 
     /// Light along a ray by parts, at the model's wavelengths, over at most `limit_m` metres; `None` for models without
     /// [`Capabilities::parts`].
@@ -236,10 +297,38 @@ pub trait RadianceSampler: Debug + Send + Sync {
     );
 
     /// Mean and standard error at each wavelength along a direction, over at most `limit_m` metres.
-    fn estimate(&self, direction: DVec3, limit_m: Option<f64>) -> Estimate;
+    fn estimate(&self, direction: DVec3, limit_m: Option<f64>) -> Estimate {
+        self.estimate_with(direction, limit_m, Control::default())
+            .expect("nothing cancels it")
+    }
+
+    /// As [`Self::estimate`], with cancellation.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn estimate_with(
+        &self,
+        direction: DVec3,
+        limit_m: Option<f64>,
+        control: Control<'_>,
+    ) -> Result<Estimate, Cancelled>;
 
     /// [`Self::estimate`] with polarisation.
-    fn polarised_estimate(&self, direction: DVec3, limit_m: Option<f64>) -> PolarisedEstimate;
+    fn polarised_estimate(&self, direction: DVec3, limit_m: Option<f64>) -> PolarisedEstimate {
+        self.polarised_estimate_with(direction, limit_m, Control::default())
+            .expect("nothing cancels it")
+    }
+
+    /// As [`Self::polarised_estimate`], with cancellation.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn polarised_estimate_with(
+        &self,
+        direction: DVec3,
+        limit_m: Option<f64>,
+        control: Control<'_>,
+    ) -> Result<PolarisedEstimate, Cancelled>;
 
     /// A view of the same scene by a deterministic solver, for exposure, previews and quantities that must be free of noise.
     fn preview(&self) -> Arc<dyn RadianceView>;

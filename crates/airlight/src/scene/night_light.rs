@@ -33,16 +33,30 @@ impl NightLight {
         sun: &SunAngles,
         space: RgbSpace,
     ) -> Result<Option<Self>, SceneError> {
+        Self::new_with(scene, view, sun, space, Control::default())
+    }
+
+    /// As [`Self::new`], with cancellation.
+    ///
+    /// # Errors
+    /// As [`Self::new`], and if the caller cancelled.
+    pub fn new_with(
+        scene: &ResolvedScene,
+        view: &View,
+        sun: &SunAngles,
+        space: RgbSpace,
+        control: Control<'_>,
+    ) -> Result<Option<Self>, SceneError> {
         let (Some(settings), Some(night)) = (scene.night, scene.night(sun)) else {
             return Ok(None);
         };
         let altitude_m = view.radius_m() - view.sky().atmosphere().planet.radius_m;
         let suns = SunCoverage::near(sun.elevation_deg, altitude_m);
-        let sky = NightSky::new(scene, settings, (view.sky(), suns), Control::default())?;
+        let sky = NightSky::new(scene, settings, (view.sky(), suns), control)?;
         Ok(Some(Self {
             space,
-            moonlit: sky.moonlit_view(altitude_m, &night)?,
-            glow: Arc::new(sky.glow(altitude_m, &night, Channels::Rgb(space))?),
+            moonlit: sky.moonlit_view(altitude_m, &night, control)?,
+            glow: Arc::new(sky.glow(altitude_m, &night, Channels::Rgb(space), control)?),
         }))
     }
 }

@@ -70,25 +70,27 @@ impl NightSky {
     /// A sky under the sun, and the lights of a night with it.
     ///
     /// # Errors
-    /// [`SceneError`] for an invalid fog.
+    /// [`SceneError`] for an invalid fog, and if the caller cancelled.
     pub fn view(
         &self,
         sunlit: View,
         night: &NightState,
         channels: Channels,
+        control: Control<'_>,
     ) -> Result<NightView, SceneError> {
         let altitude_m = sunlit.radius_m() - sunlit.sky().atmosphere().planet.radius_m;
         let moon = night.moon.map(|moon| -> Result<_, SceneError> {
-            let view = self.moonlit(altitude_m, &moon)?;
-            let lit = SolvedView::new(view, self.fog.as_ref(), channels)?;
+            let view = self.moonlit(altitude_m, &moon, control)?;
+            let lit = SolvedView::new(view, self.fog.as_ref(), channels, control)?;
             Ok(Arc::new(lit.with_moon(moon)) as Arc<dyn RadianceView>)
         });
-        let glow = self.glow(altitude_m, night, channels)?;
+        let glow = self.glow(altitude_m, night, channels, control)?;
         let lighting = match self.fog {
             Some(_) => glow.mean_radiance(),
             None => Vec::new(),
         };
-        let sunlit = SolvedView::with_glow(sunlit, &lighting, self.fog.as_ref(), channels)?;
+        let fog = self.fog.as_ref();
+        let sunlit = SolvedView::with_glow(sunlit, &lighting, fog, channels, control)?;
         let glow = match sunlit.fog() {
             Some(fog) => glow.behind(fog.clone()),
             None => glow,
@@ -100,26 +102,31 @@ impl NightSky {
     /// The sky under the moon of a night, for an eye at an altitude, m; `None` if the moon is so low that its light does not matter.
     ///
     /// # Errors
-    /// [`SkyError::NotConverged`].
+    /// [`SkyError::NotConverged`]; [`SkyError::Cancelled`].
     pub fn moonlit_view(
         &self,
         altitude_m: f64,
         night: &NightState,
+        control: Control<'_>,
     ) -> Result<Option<View>, SkyError> {
         let Some(moon) = night.moon else {
             return Ok(None);
         };
         let up_deg = moon.direction.y.clamp(-1.0, 1.0).asin().to_degrees();
         (up_deg > -MOON_DOWN_DEG)
-            .then(|| self.moonlit(altitude_m, &moon))
+            .then(|| self.moonlit(altitude_m, &moon, control))
             .transpose()
     }
 
-    fn moonlit(&self, altitude_m: f64, moon: &MoonState) -> Result<View, SkyError> {
+    fn moonlit(
+        &self,
+        altitude_m: f64,
+        moon: &MoonState,
+        control: Control<'_>,
+    ) -> Result<View, SkyError> {
         let ratios = self.sky.grid().wavelengths_nm().iter();
-        let view = self
-            .sky
-            .try_view(altitude_m, SunState::from(moon.direction))?;
+        let source = SunState::from(moon.direction);
+        let view = self.sky.view_with(altitude_m, source, control)?;
         Ok(view.under_source(
             ratios.map(|&nm| moon.irradiance_ratio(nm)).collect(),
             moon.disc(),
@@ -129,16 +136,17 @@ impl NightSky {
     /// The diffuse lights of a night for an eye at an altitude, m, without fog.
     ///
     /// # Errors
-    /// [`SkyError::NotConverged`] for an altitude far from that of the scene, under the glow of cities.
+    /// [`SkyError::NotConverged`] for an altitude far from that of the scene, under the glow of cities; [`SkyError::Cancelled`].
     pub(super) fn glow(
         &self,
         altitude_m: f64,
         night: &NightState,
         channels: Channels,
+        control: Control<'_>,
     ) -> Result<GlowView, SkyError> {
         GlowView::new(
             &self.sky,
-            self.rings(altitude_m).as_ref(),
+            self.rings(altitude_m, control)?.as_ref(),
             NightGlow::new(night.frame, self.settings.solar_flux_sfu),
             (self.city.as_deref(), self.settings.sky_quality_mag),
             channels,
@@ -146,18 +154,22 @@ impl NightSky {
     }
 
     /// Scattering for an eye at an altitude, m; computed once.
-    fn rings(&self, altitude_m: f64) -> Arc<RingScattering> {
+    fn rings(
+        &self,
+        altitude_m: f64,
+        control: Control<'_>,
+    ) -> Result<Arc<RingScattering>, SkyError> {
         let known = || self.rings.lock().unwrap_or_else(PoisonError::into_inner);
         let find = |rings: &[Arc<RingScattering>]| {
             let same = |rings: &&Arc<RingScattering>| rings.altitude_m() == altitude_m;
             rings.iter().find(same).cloned()
         };
         if let Some(rings) = find(&known()) {
-            return rings;
+            return Ok(rings);
         }
         // Not computed under the lock: threads that wait for it might be needed.
-        let rings = Arc::new(RingScattering::new(&self.sky, altitude_m));
+        let rings = Arc::new(RingScattering::new(&self.sky, altitude_m, control)?);
         known().push(rings.clone());
-        rings
+        Ok(rings)
     }
 }

@@ -7,6 +7,7 @@ use super::lane_channels::LaneChannels;
 use super::light::LitSky;
 use super::night_light::NightLight;
 use crate::atmosphere::Constituent;
+use crate::control::Control;
 use crate::fog::{FogScattering, Ground};
 use crate::math::slices::check_length;
 use crate::sky::View;
@@ -76,9 +77,23 @@ impl RgbFoggySky {
         scattering: FogScattering,
         space: RgbSpace,
     ) -> Result<Self, SceneError> {
+        Self::new_with(view, layers, scattering, space, Control::default())
+    }
+
+    /// As [`RgbFoggySky::new`], with cancellation.
+    ///
+    /// # Errors
+    /// As [`RgbFoggySky::new`], and if the caller cancelled.
+    pub fn new_with(
+        view: &View,
+        layers: &[Constituent],
+        scattering: FogScattering,
+        space: RgbSpace,
+        control: Control<'_>,
+    ) -> Result<Self, SceneError> {
         let ground = FoggySky::<3>::round_ground(view);
         let channels = LaneChannels::Rgb(space);
-        let lanes = FoggySky::new(view, channels, layers, ground, scattering)?;
+        let lanes = FoggySky::new(view, channels, layers, ground, scattering, control)?;
         Ok(Self {
             lanes: Arc::new(lanes),
             night: None,
@@ -95,15 +110,27 @@ impl RgbFoggySky {
         layers: &[Constituent],
         scattering: FogScattering,
     ) -> Result<Self, SceneError> {
+        Self::at_night_with(view, night, layers, scattering, Control::default())
+    }
+
+    /// As [`RgbFoggySky::at_night`], with cancellation.
+    ///
+    /// # Errors
+    /// As [`RgbFoggySky::at_night`], and if the caller cancelled.
+    pub fn at_night_with(
+        view: &View,
+        night: &NightLight,
+        layers: &[Constituent],
+        scattering: FogScattering,
+        control: Control<'_>,
+    ) -> Result<Self, SceneError> {
         let ground = FoggySky::<3>::round_ground(view);
         let channels = LaneChannels::Rgb(night.space);
         let glow = &night.glow.mean_radiance();
-        let lanes = FoggySky::new(LitSky { view, glow }, channels, layers, ground, scattering)?;
+        let lit = |sky| FoggySky::new(sky, channels, layers, ground, scattering, control);
+        let lanes = lit(LitSky { view, glow })?;
         let moonlit = match &night.moonlit {
-            Some(view) => {
-                let moonlit = FoggySky::new(view, channels, layers, ground, scattering)?;
-                Some(Arc::new(moonlit))
-            }
+            Some(view) => Some(Arc::new(lit(view.into())?)),
             None => None,
         };
         Ok(Self {
@@ -125,7 +152,23 @@ impl RgbFoggySky {
         layers: &[Constituent],
         scattering: FogScattering,
     ) -> Result<Self, SceneError> {
-        let with_fog = |lanes: &Arc<FoggySky<3>>| lanes.with_fog(layers, scattering).map(Arc::new);
+        self.with_fog_with(layers, scattering, Control::default())
+    }
+
+    /// As [`RgbFoggySky::with_fog`], with cancellation.
+    ///
+    /// # Errors
+    /// As [`RgbFoggySky::with_fog`], and if the caller cancelled.
+    pub fn with_fog_with(
+        &self,
+        layers: &[Constituent],
+        scattering: FogScattering,
+        control: Control<'_>,
+    ) -> Result<Self, SceneError> {
+        let with_fog = |lanes: &Arc<FoggySky<3>>| {
+            let lanes = lanes.with_fog(layers, scattering, control)?;
+            Ok::<_, SceneError>(Arc::new(lanes))
+        };
         let night = match &self.night {
             Some(night) => Some(FoggyNight {
                 moonlit: night.moonlit.as_ref().map(with_fog).transpose()?,

@@ -6,6 +6,7 @@ use super::light::LitSky;
 use super::sun_disc_table::SunDiscTable;
 use super::{Channels, FogLayers, IrradianceMap, RadianceView, RowSampler, SceneError};
 use crate::axes;
+use crate::control::{Cancelled, Control};
 use crate::night::MoonState;
 use crate::sky::{LineOfSight, PolarisationTable, PolarisedLight, SkyColumns, SkyTable, View};
 use crate::spectrum::WavelengthGrid;
@@ -36,8 +37,24 @@ pub(crate) struct SolvedView {
 impl View {
     /// The light of this view through the interface of all models, tabulated in `channels`, as pictures are drawn from it.
     pub fn radiance_view(&self, channels: Channels) -> Arc<dyn RadianceView> {
-        let solved = SolvedView::new(self.clone(), None, channels);
-        Arc::new(solved.expect("a view without fog is valid in all channels"))
+        self.radiance_view_with(channels, Control::default())
+            .expect("nothing cancels it")
+    }
+
+    /// As [`View::radiance_view`], with cancellation.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn radiance_view_with(
+        &self,
+        channels: Channels,
+        control: Control<'_>,
+    ) -> Result<Arc<dyn RadianceView>, Cancelled> {
+        match SolvedView::new(self.clone(), None, channels, control) {
+            Ok(solved) => Ok(Arc::new(solved)),
+            Err(error) if error.is_cancelled() => Err(Cancelled),
+            Err(error) => unreachable!("a view without fog is valid in all channels: {error}"),
+        }
     }
 }
 
@@ -45,33 +62,35 @@ impl SolvedView {
     /// Tabulates the sky of a view, with or without fog.
     ///
     /// # Errors
-    /// [`SceneError`] for fog that is refused.
+    /// [`SceneError`] for fog that is refused, and if the caller cancelled.
     pub fn new(
         view: View,
         fog: Option<&FogLayers>,
         channels: Channels,
+        control: Control<'_>,
     ) -> Result<Self, SceneError> {
-        Self::with_glow(view, &[], fog, channels)
+        Self::with_glow(view, &[], fog, channels, control)
     }
 
     /// [`Self::new`] in which fog also scatters a glow of the sky, given by its mean radiance in the channels.
     ///
     /// # Errors
-    /// [`SceneError`] for fog that is refused.
+    /// As [`Self::new`].
     pub fn with_glow(
         view: View,
         glow: &[f32],
         fog: Option<&FogLayers>,
         channels: Channels,
+        control: Control<'_>,
     ) -> Result<Self, SceneError> {
         let lit = LitSky { view: &view, glow };
         let fog = match fog {
-            Some(fog) => Some(Arc::new(FogInSky::new(Some(fog), lit, channels)?)),
+            Some(fog) => Some(Arc::new(FogInSky::new(Some(fog), lit, channels, control)?)),
             None => None,
         };
         let clear = match &fog {
             Some(fog) => fog.clear().clone(),
-            None => Arc::new(view.table(channels)),
+            None => Arc::new(view.table_with(channels, control)?),
         };
         let grid = match channels {
             Channels::Spectral => {
@@ -122,7 +141,7 @@ impl SolvedView {
         match &self.fog {
             Some(fog) => fog,
             None => self.air.get_or_init(|| {
-                FogInSky::new(None, (&self.view).into(), self.channels)
+                FogInSky::new(None, (&self.view).into(), self.channels, Control::default())
                     .expect("channels of a view without fog are valid")
             }),
         }

@@ -9,7 +9,7 @@ use super::samples_along_rays::RaySample;
 use super::settings::{Scattering, SkyError, SkySettings};
 use super::trace::Tracer;
 use crate::atmosphere::Atmosphere;
-use crate::control::Control;
+use crate::control::{Cancelled, Control};
 use crate::math::parallel;
 use crate::math::simd::vectorized;
 use crate::spectrum::Spectrum;
@@ -78,6 +78,9 @@ pub trait Block: Send + Sync {
 
     /// Adds the light along each ray of `rows` to `out`. Each ray has `width` values: the smooth light in each channel, then each of
     /// the parts in each channel, divided by the mean phase function.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
     fn fill(
         &self,
         rows: &[TableRow],
@@ -85,7 +88,8 @@ pub trait Block: Send + Sync {
         peaked: &Peaked,
         width: usize,
         out: &mut [f32],
-    );
+        control: Control<'_>,
+    ) -> Result<(), Cancelled>;
 }
 
 /// The rays of one table row: one elevation, all azimuths.
@@ -317,14 +321,16 @@ impl<const N: usize> Block for Solved<N> {
         peaked: &Peaked,
         width: usize,
         out: &mut [f32],
-    ) {
+        control: Control<'_>,
+    ) -> Result<(), Cancelled> {
         let weights: Vec<Spectrum<N>> = matrix
             .weights
             .iter()
             .map(|row| Spectrum::from_fn(|lane| if lane < self.lanes { row[lane] } else { 0.0 }))
             .collect();
         let stride = width * rows[0].bundle.len();
-        parallel::for_each_chunk(out, stride, |index, out| {
+        parallel::try_for_each_chunk(out, stride, |index, out| {
+            control.check()?;
             let row = &rows[index];
             vectorized(
                 #[inline(always)]
@@ -335,7 +341,8 @@ impl<const N: usize> Block for Solved<N> {
                     }
                 },
             );
-        });
+            Ok(())
+        })
     }
 }
 

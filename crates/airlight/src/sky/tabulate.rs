@@ -6,6 +6,7 @@ use super::ray_bundle::RayBundle;
 use super::table::{AZIMUTHS, Half, ROWS_ABOVE, ROWS_BELOW, SkyTable, TableChannels};
 use super::view::View;
 use crate::atmosphere::Constituent;
+use crate::control::{Cancelled, Control};
 use crate::spectrum::{WavelengthGrid, rgb};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -13,12 +14,25 @@ use std::f64::consts::{FRAC_PI_2, PI};
 impl View {
     /// Tabulates the radiance in all directions.
     pub fn table(&self, channels: TableChannels) -> SkyTable {
-        SkyTable::new(self, channels)
+        self.table_with(channels, Control::default())
+            .expect("nothing cancels it")
+    }
+
+    /// As [`View::table`], with cancellation.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn table_with(
+        &self,
+        channels: TableChannels,
+        control: Control<'_>,
+    ) -> Result<SkyTable, Cancelled> {
+        SkyTable::new(self, channels, control)
     }
 }
 
 impl SkyTable {
-    fn new(view: &View, channels: TableChannels) -> Self {
+    fn new(view: &View, channels: TableChannels, control: Control<'_>) -> Result<Self, Cancelled> {
         let sky = view.sky();
         let shell = sky.shell();
         let radius_m = view.radius_m();
@@ -39,12 +53,12 @@ impl SkyTable {
             let table_rows = half_rows(view, horizon_elevation, span, rows);
             let mut values = vec![0.0; rows * (AZIMUTHS + 1) * width];
             for (block, matrix) in sky.blocks().iter().zip(&matrices) {
-                block.fill(&table_rows, matrix, &peaked, width, &mut values);
+                block.fill(&table_rows, matrix, &peaked, width, &mut values, control)?;
             }
-            Half { span, rows, values }
+            Ok(Half { span, rows, values })
         };
         let horizontal = DVec3::new(view.sun().x, 0.0, view.sun().z);
-        Self {
+        Ok(Self {
             channels: channel_count,
             is_spectral: matches!(channels, TableChannels::Spectral),
             width,
@@ -55,10 +69,10 @@ impl SkyTable {
                 DVec3::X
             },
             horizon_elevation,
-            above: half(highest_elevation - horizon_elevation, ROWS_ABOVE),
-            below: half(-FRAC_PI_2 - horizon_elevation, ROWS_BELOW),
+            above: half(highest_elevation - horizon_elevation, ROWS_ABOVE)?,
+            below: half(-FRAC_PI_2 - horizon_elevation, ROWS_BELOW)?,
             peaked,
-        }
+        })
     }
 }
 

@@ -5,6 +5,7 @@
 
 mod analytic_drops;
 mod book;
+mod cancelled;
 mod colour;
 mod common;
 mod fog_drops;

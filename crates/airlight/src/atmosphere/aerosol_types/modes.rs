@@ -1,5 +1,6 @@
 //! Optics of modes of particles, single and summed.
 
+use crate::control::Control;
 use crate::optics::mie::{BulkOptics, MieError, Particles, SizeDistribution};
 use crate::optics::{RefractiveIndex, TabulatedPhase};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -66,7 +67,8 @@ impl Mode {
             return Ok(Arc::clone(optics));
         }
         // Without the lock, so that other threads can compute other modes.
-        let (phase, bulk) = particles.broad_table(&WAVELENGTHS_NM, WIDER, TOLERANCE)?;
+        let control = Control::default();
+        let (phase, bulk) = particles.broad_table(&WAVELENGTHS_NM, WIDER, TOLERANCE, control)?;
         let optics = Arc::new(ModeOptics { phase, bulk });
         let mut cache = cache();
         cache.insert(0, (particles, Arc::clone(&optics)));

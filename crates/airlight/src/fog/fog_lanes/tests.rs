@@ -16,7 +16,7 @@ fn lanes(
     scattering: FogScattering,
 ) -> Result<FogLanes<3>, FogError> {
     let layers: Vec<LayerLanes<3>> = layers.iter().map(LayerLanes::rgb).collect();
-    FogLanes::new(&layers, ground, lighting, scattering, 3)
+    FogLanes::new(&layers, ground, lighting, scattering, 3, Control::default())
 }
 
 fn layer(extinction_per_m: [f32; 3], albedo: f32, phase: PhaseFunction) -> RgbLayer {

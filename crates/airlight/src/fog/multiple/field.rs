@@ -6,6 +6,7 @@ use super::ordinates::{self, Boundary, Cell};
 use super::peak::{Kinds, PeakCell, PeakScattering, PeakSource, Rows, Solved};
 use crate::atmosphere::DensityProfile;
 use crate::atmosphere::RaySegment;
+use crate::control::{Cancelled, Control};
 use crate::fog::closed_forms::{Lanes, linear_source_mean, mean_attenuated_source};
 use crate::fog::lighting::{FogLighting, Ground};
 use crate::fog::ray_cuts::split_at_heights;
@@ -77,13 +78,17 @@ pub struct Field<const N: usize> {
 impl<const N: usize> Field<N> {
     /// Solves for the light in these layers. `sun_depth(height)` is the optical depth to the sun for each stream, of which the
     /// first has the reduced extinction; huge where the ground blocks it. Lanes from `lanes` on are copies of the last lane before.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
     pub fn solve(
         layers: Vec<Reduced<N>>,
         ground: &Ground,
         light: &FogLighting<Spectrum<N>>,
         sun_depth: impl Fn(f64) -> [Spectrum<N>; STREAMS],
         lanes: usize,
-    ) -> Self {
+        control: Control<'_>,
+    ) -> Result<Self, Cancelled> {
         let weighted: Vec<Weighted> = layers
             .iter()
             .map(|s| {
@@ -113,6 +118,7 @@ impl<const N: usize> Field<N> {
         let sun_depths: Vec<[Spectrum<N>; STREAMS]> =
             field.heights_m.iter().map(|&h| sun_depth(h)).collect();
         for lane in 0..lanes.min(N) {
+            control.check()?;
             field.solve_lane(lane, light, &sun_depths);
         }
         for lane in lanes..N {
@@ -134,7 +140,7 @@ impl<const N: usize> Field<N> {
             let part = cell.part_without_peaks();
             ends.iter_mut().flatten().for_each(|moment| *moment *= part);
         }
-        field
+        Ok(field)
     }
 
     fn copy_lane(&mut self, from: usize, to: usize) {

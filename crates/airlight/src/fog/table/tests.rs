@@ -1,6 +1,7 @@
 use super::*;
 use crate::atmosphere::{DensityProfile, droplets};
 use crate::axes;
+use crate::control::Control;
 use crate::fog::layer::LayerLanes;
 use crate::fog::{DirectionalLight, FogLighting, FogScattering, Ground, RgbLayer};
 use crate::optics::PhaseFunction;
@@ -21,7 +22,8 @@ fn solved(
     lighting: FogLighting<Spectrum<3>>,
 ) -> Arc<FogLanes<3>> {
     let layers: Vec<LayerLanes<3>> = layers.iter().map(LayerLanes::rgb).collect();
-    let fog = FogLanes::new(&layers, ground, lighting, FogScattering::Multiple, 3);
+    let (scattering, control) = (FogScattering::Multiple, Control::default());
+    let fog = FogLanes::new(&layers, ground, lighting, scattering, 3, control);
     Arc::new(fog.unwrap())
 }
 
@@ -135,7 +137,14 @@ fn many_rays_are_the_same_as_single_ones() {
                     layers[0].extinction_per_m = [extinction; 3];
                 }
                 let layers = layers.each_ref().map(LayerLanes::rgb);
-                let fog = FogLanes::new(&layers, Ground::FLAT, lighting(sun), scattering, 3);
+                let fog = FogLanes::new(
+                    &layers,
+                    Ground::FLAT,
+                    lighting(sun),
+                    scattering,
+                    3,
+                    Control::default(),
+                );
                 let table = TableLanes::new(Arc::new(fog.unwrap()), 15.0);
                 let mut many = vec![PathOptics::<3>::CLEAR; directions.len()];
                 table.paths(&directions, &lengths_m, &mut many);

@@ -34,19 +34,21 @@ impl Blue {
     /// solar irradiance at that distance.
     ///
     /// # Errors
-    /// [`SkyError::NotConverged`] for a sun that the base is not prepared for.
+    /// [`SkyError::NotConverged`] for a sun that the base is not prepared for; [`SkyError::Cancelled`].
     pub fn new(
         settings: &Klassen1987Settings,
         grid: &WavelengthGrid,
         (sun_elevation, sun_distance_ratio): (f64, f64),
         base: &BaseSky,
+        control: Control<'_>,
     ) -> Result<Self, SkyError> {
         Ok(match base {
             BaseSky::Solved(sky) => {
                 let ground_m = sky.atmosphere().planet.ground_altitude_m;
                 let sun = SunState::from(axes::direction(180.0, sun_elevation.to_degrees()));
-                let view = sky.try_view(ground_m, sun.at_distance_ratio(sun_distance_ratio))?;
-                let table = view.table(TableChannels::Spectral);
+                let sun = sun.at_distance_ratio(sun_distance_ratio);
+                let view = sky.view_with(ground_m, sun, control)?;
+                let table = view.table_with(TableChannels::Spectral, control)?;
                 Self::Table(Box::new(table), sun_elevation)
             }
             BaseSky::Constant {

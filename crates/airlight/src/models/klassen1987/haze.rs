@@ -3,6 +3,7 @@
 use super::lanes::{Lanes, wavelengths_nm};
 use super::settings::{Haze, HazePhase, Klassen1987Error, Klassen1987Settings};
 use crate::atmosphere::REFERENCE_NM;
+use crate::control::Control;
 use crate::math::interpolation::Place;
 use crate::optics::mie::droplets::Drops;
 use crate::optics::mie::{BulkOptics, MieError, Particles};
@@ -33,8 +34,11 @@ pub(super) struct HazeTables {
 
 impl HazeTables {
     /// Tables for checked settings.
-    pub fn new(settings: &Klassen1987Settings) -> Result<Self, Klassen1987Error> {
-        let (extinction, albedo, phase) = settings.haze.optics()?;
+    pub fn new(
+        settings: &Klassen1987Settings,
+        control: Control<'_>,
+    ) -> Result<Self, Klassen1987Error> {
+        let (extinction, albedo, phase) = settings.haze.optics(control)?;
         let at_reference = extinction.at(REFERENCE_NM);
         let mut extinction_per_m = Lanes::ZERO;
         let mut scattering_per_m = Vec::with_capacity(extinction_per_m.0.len());
@@ -97,9 +101,9 @@ fn in_range(got: f64, most: f64, what: &'static str) -> Result<f64, Klassen1987E
 
 impl Haze {
     /// Extinction on an arbitrary scale, single-scattering albedo and phase function.
-    pub(super) fn optics(&self) -> Result<Optics, MieError> {
+    pub(super) fn optics(&self, control: Control<'_>) -> Result<Optics, MieError> {
         match self {
-            Self::Drops(drops) => drop_optics(*drops),
+            Self::Drops(drops) => drop_optics(*drops, control),
             Self::Given {
                 extinction,
                 single_scattering_albedo,
@@ -117,7 +121,7 @@ impl Haze {
 pub(super) type Optics = (SpectralCurve, SpectralCurve, PhaseFunction);
 
 /// Optical properties of water drops, computed once in a process and cached.
-fn drop_optics(drops: Drops) -> Result<Optics, MieError> {
+fn drop_optics(drops: Drops, control: Control<'_>) -> Result<Optics, MieError> {
     type Known = Vec<(Drops, Arc<(TabulatedPhase, Vec<BulkOptics>)>)>;
     static KNOWN: Mutex<Known> = Mutex::new(Vec::new());
     let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
@@ -129,9 +133,8 @@ fn drop_optics(drops: Drops) -> Result<Optics, MieError> {
         Some(table) => table,
         None => {
             // Computed without the lock, so that other threads can compute other kinds.
-            let table =
-                Particles::water(drops.sizes())?.broad_table(&MIE_NM, STEP_FACTOR, TOLERANCE)?;
-            let table = Arc::new(table);
+            let water = Particles::water(drops.sizes())?;
+            let table = Arc::new(water.broad_table(&MIE_NM, STEP_FACTOR, TOLERANCE, control)?);
             known().push((drops, Arc::clone(&table)));
             table
         }
@@ -155,8 +158,8 @@ mod tests {
     #[test]
     fn tables_follow_the_function() -> Result<(), Klassen1987Error> {
         let settings = Klassen1987Settings::default();
-        let haze = HazeTables::new(&settings)?;
-        let (extinction, albedo, phase) = drop_optics(Drops::HazeL)?;
+        let haze = HazeTables::new(&settings, Control::default())?;
+        let (extinction, albedo, phase) = drop_optics(Drops::HazeL, Control::default())?;
         for (lane, nm) in wavelengths_nm().enumerate() {
             let beta = 5e-5 * extinction.at(nm) / extinction.at(550.0);
             assert!((f64::from(haze.extinction_per_m.0[lane]) / beta - 1.0).abs() < 1e-6);
@@ -173,7 +176,7 @@ mod tests {
     /// Figure 3: scattering efficiency falls with wavelength for such small drops, which do not absorb.
     #[test]
     fn wet_haze_scatters_blue_slightly_more() -> Result<(), MieError> {
-        let (extinction, albedo, _) = drop_optics(Drops::HazeL)?;
+        let (extinction, albedo, _) = drop_optics(Drops::HazeL, Control::default())?;
         let ratio = extinction.at(450.0) / extinction.at(650.0);
         assert!((1.0..2.0).contains(&ratio), "{ratio}");
         assert!(albedo.at(550.0) > 0.9999);
@@ -185,10 +188,11 @@ mod tests {
     fn printed_phase_function_is_not_normalised() -> Result<(), Klassen1987Error> {
         for g in [0.0, 0.5, 0.8] {
             let with = |phase| {
-                HazeTables::new(&Klassen1987Settings {
+                let settings = Klassen1987Settings {
                     phase,
                     ..Klassen1987Settings::default()
-                })
+                };
+                HazeTables::new(&settings, Control::default())
             };
             let (printed, corrected) = (
                 with(HazePhase::Printed { g })?,

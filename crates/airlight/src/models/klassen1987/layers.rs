@@ -3,6 +3,7 @@
 use super::settings::{Haze, Klassen1987Error, Klassen1987Settings, scatters};
 use crate::atmosphere::REFERENCE_NM;
 use crate::atmosphere::{Atmosphere, Constituent, ConstituentKind, DensityProfile, Planet};
+use crate::control::Control;
 use crate::optics::PhaseFunction;
 use crate::spectrum::SpectralCurve;
 
@@ -55,7 +56,7 @@ impl Klassen1987Settings {
     pub fn atmosphere(&self) -> Result<Atmosphere, Klassen1987Error> {
         self.validate()?;
         let mut atmosphere = self.dense_clear_air();
-        let (extinction, albedo, phase) = self.haze.optics()?;
+        let (extinction, albedo, phase) = self.haze.optics(Control::default())?;
         let scale = self.haze_extinction_per_m / extinction.at(REFERENCE_NM);
         let ground_m = atmosphere.planet.ground_altitude_m;
         atmosphere.constituents.push(Constituent {

@@ -102,7 +102,7 @@ impl Base {
     ) -> Result<Self, Klassen1987Error> {
         Ok(Self {
             sky: BaseSky::prepare(settings, suns, control)?,
-            haze: Arc::new(HazeTables::new(settings)?),
+            haze: Arc::new(HazeTables::new(settings, control)?),
         })
     }
 }
@@ -116,12 +116,13 @@ impl Klassen1987 {
     pub fn new(settings: &Klassen1987Settings, sun: DVec3) -> Result<Self, Klassen1987Error> {
         settings.validate()?;
         let suns = SunCoverage::near(axes::elevation_deg(sun), 0.0);
-        let base = Base::prepare(settings, suns, Control::default())?;
+        let control = Control::default();
+        let base = Base::prepare(settings, suns, control)?;
         let sun = SunState {
             direction: sun,
             distance_ratio: 1.0,
         };
-        Self::over(settings, &base, &sun)
+        Self::over(settings, &base, &sun, control)
     }
 
     /// The model of checked settings with their prepared parts.
@@ -129,6 +130,7 @@ impl Klassen1987 {
         settings: &Klassen1987Settings,
         base: &Base,
         sun: &SunState,
+        control: Control<'_>,
     ) -> Result<Self, Klassen1987Error> {
         let direction = sun.direction.normalize_or_zero();
         let elevation_deg = axes::elevation_deg(direction);
@@ -163,6 +165,7 @@ impl Klassen1987 {
                 &grid,
                 (sin_sun.asin(), sun.distance_ratio),
                 &base.sky,
+                control,
             )?,
             cells: OnceLock::new(),
             settings: settings.clone(),

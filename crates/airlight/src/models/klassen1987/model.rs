@@ -7,6 +7,7 @@ use super::{BaseBlue, Haze, Klassen1987, Klassen1987Error, Klassen1987Settings};
 use crate::control::Control;
 use crate::models::PublishedModel;
 use crate::models::prepared::Prepared;
+use crate::optics::mie::MieError;
 use crate::optics::mie::droplets::Drops;
 use crate::scene::{
     BaseBlueKind, Capabilities, FogLayers, Input, Klassen1987Spec, PreparedModel, RadianceModel,
@@ -83,7 +84,9 @@ impl RadianceModel for Klassen1987Model {
             last: Mutex::new(None),
         };
         let grid = super::wavelength_grid().with_solar(&scene.atmosphere.solar_irradiance);
-        let make = move |altitude_m: f64, sun: &SunState| prepared.model(altitude_m, sun, whole);
+        let make = move |altitude_m: f64, sun: &SunState, control: Control<'_>| {
+            prepared.model(altitude_m, sun, whole, control)
+        };
         let prepared = Prepared::new(self.name(), scene, Some(grid), make);
         Ok(Arc::new(prepared.with_spectral_objects()))
     }
@@ -115,6 +118,7 @@ impl PreparedAir {
         altitude_m: f64,
         sun: &SunState,
         whole: bool,
+        control: Control<'_>,
     ) -> Result<Arc<dyn PublishedModel>, SceneError> {
         let last = || self.last.lock().unwrap_or_else(PoisonError::into_inner);
         let height_m = altitude_m - self.ground_altitude_m;
@@ -122,7 +126,7 @@ impl PreparedAir {
         let lit = match known {
             Some((_, lit)) => lit,
             None => {
-                let sky = Klassen1987::over(&self.settings, &self.base, sun);
+                let sky = Klassen1987::over(&self.settings, &self.base, sun, control);
                 let sky = Arc::new(sky.map_err(refused)?);
                 let lit = match whole {
                     false => Lit::Sky(sky),
@@ -210,9 +214,8 @@ fn slab(fog: &FogLayers) -> Result<Fog1987, SceneError> {
 /// Converts an error of the model.
 fn refused(error: Klassen1987Error) -> SceneError {
     match error {
-        Klassen1987Error::Sky(SkyError::Cancelled(cancelled)) => {
-            SceneError::Sky(SkyError::Cancelled(cancelled))
-        }
+        Klassen1987Error::Sky(SkyError::Cancelled(cancelled))
+        | Klassen1987Error::Mie(MieError::Cancelled(cancelled)) => cancelled.into(),
         error => SceneError::model("klassen1987", error),
     }
 }

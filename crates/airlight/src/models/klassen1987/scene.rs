@@ -19,6 +19,7 @@ use super::settings::{HazePhase, Klassen1987Error};
 use super::simpson::Simpson;
 use crate::atmosphere::{Constituent, DensityProfile, RaySegment};
 use crate::axes;
+use crate::control::Control;
 use crate::fog::LayerLanes;
 use crate::models::PublishedModel;
 use crate::models::klassen1987::fog::{Slab1987, SunDepth};
@@ -232,7 +233,7 @@ impl Klassen1987 {
 
     /// Haze with its density at the ground.
     fn haze_at_ground(&self) -> Result<LayerLanes<WAVELENGTHS>, Klassen1987Error> {
-        let (_, albedo, phase) = self.settings.haze.optics()?;
+        let (_, albedo, phase) = self.settings.haze.optics(Control::default())?;
         let albedo = Self::wavelengths().map(|nm| albedo.at(nm).clamp(0.0, 1.0) as f32);
         Ok(LayerLanes {
             density: DensityProfile::Uniform,

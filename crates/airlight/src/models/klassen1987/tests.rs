@@ -39,7 +39,7 @@ fn suns_share_what_does_not_depend_on_them() {
     let base = Base::prepare(&settings, SunCoverage::All, Control::default()).unwrap();
     let under = |sun_deg| {
         let sun = SunState::from(direction(180.0, sun_deg));
-        Klassen1987::over(&settings, &base, &sun).unwrap()
+        Klassen1987::over(&settings, &base, &sun, Control::default()).unwrap()
     };
     let (high, low) = (under(60.0), under(5.0));
     assert!(Arc::ptr_eq(&high.haze, &low.haze));

@@ -5,6 +5,7 @@
 //! surroundings return with each further order (eqs. 7 and 8), and the geometric series of all later orders (eqs. 9 and 10).
 
 use super::{AirLanes, Steps, TransmittanceTable};
+use crate::control::{Cancelled, Control};
 use crate::math::interpolation::bilinear;
 use crate::math::parallel;
 use crate::transfer::ray::Ray;
@@ -43,28 +44,34 @@ pub struct MultipleScatteringTable {
 
 impl MultipleScatteringTable {
     /// Computes the table for an atmosphere and its transmittance.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
     pub fn new(
         air: &AirLanes,
         transmittance: &TransmittanceTable,
         settings: &MultipleScatteringSettings,
-    ) -> Self {
+        control: Control<'_>,
+    ) -> Result<Self, Cancelled> {
         let (ground_radius_m, top_radius_m) = air.bounds_m();
         let size = settings.size;
         let lanes = air.lanes();
         let mut values = vec![0.0; size[0] * size[1] * lanes];
-        parallel::for_each_chunk(&mut values, lanes, |index, out| {
+        parallel::try_for_each_chunk(&mut values, lanes, |index, out| {
+            control.check()?;
             let mu_sun = 2.0 * (index % size[0]) as f64 / (size[0] - 1) as f64 - 1.0;
             let height = (index / size[0]) as f64 / (size[1] - 1) as f64;
             let radius_m = ground_radius_m + height * (top_radius_m - ground_radius_m);
             psi(air, transmittance, settings, (radius_m, mu_sun), out);
-        });
-        Self {
+            Ok(())
+        })?;
+        Ok(Self {
             ground_radius_m,
             top_radius_m,
             size,
             lanes,
             values,
-        }
+        })
     }
 
     /// Interpolates `Psi_ms` per unit solar irradiance, sr^-1, into `out`.

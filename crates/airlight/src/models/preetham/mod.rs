@@ -224,7 +224,7 @@ impl RadianceModel for PreethamModel {
     ) -> Result<Arc<dyn PreparedModel>, SceneError> {
         let (name, turbidity) = (self.name(), turbidity(&scene.atmosphere));
         let refused = move |error| SceneError::model(name, error);
-        let prepared = Prepared::new(name, scene, None, move |_, sun| {
+        let prepared = Prepared::new(name, scene, None, move |_, sun, _| {
             let elevation_deg = axes::elevation_deg(sun.direction);
             // Tolerates rounding.
             if elevation_deg < -1e-9 {

@@ -5,6 +5,7 @@ use super::nodes::{self, Columns};
 use super::printed::smoothstep;
 use super::settings::{Settings, Variant};
 use crate::atmosphere::presets::published;
+use crate::control::Control;
 use crate::math::quadrature::{GaussRule, RunningRule};
 use crate::models::lut::{
     AirLanes, MultipleScatteringSettings, MultipleScatteringTable, TransmittanceTable,
@@ -60,7 +61,9 @@ impl Converged {
             (Some(table), Variant::Multiple) => {
                 let air = AirLanes::new(&published::sky_article(), &CHANNELS_NM);
                 let settings = MultipleScatteringSettings::default();
-                Some(MultipleScatteringTable::new(&air, table, &settings))
+                let table =
+                    MultipleScatteringTable::new(&air, table, &settings, Control::default());
+                Some(table.expect("nothing cancels it"))
             }
             _ => None,
         };

@@ -206,7 +206,7 @@ impl RadianceModel for SingleScatteringModel {
         };
         // Tables are shared by all suns.
         let at_eye = SkyArticle::new(&settings, DVec3::Y).map_err(refused)?;
-        let prepared = Prepared::new(name, scene, None, move |eye_altitude_m, sun| {
+        let prepared = Prepared::new(name, scene, None, move |eye_altitude_m, sun, _| {
             let sky = match eye_altitude_m == settings.eye_altitude_m {
                 true => at_eye.under(sun.direction),
                 false => SkyArticle::new(

@@ -1,5 +1,6 @@
 //! Adaptive selection of the angles of a tabulated phase function.
 
+use crate::control::Cancelled;
 use crate::optics::tabulated::between_samples;
 use std::f64::consts::PI;
 
@@ -35,13 +36,13 @@ pub(super) fn adapt(
     x: f64,
     known: &[f64],
     tolerance: f64,
-    evaluate: impl Fn(&[f64]) -> Vec<f64>,
-) -> Vec<f64> {
+    evaluate: impl Fn(&[f64]) -> Result<Vec<f64>, Cancelled>,
+) -> Result<Vec<f64>, Cancelled> {
     let mut angles = match known {
         [] => first(x),
         _ => known.to_vec(),
     };
-    let mut logs: Vec<f64> = evaluate(&angles).iter().map(|p| p.ln()).collect();
+    let mut logs: Vec<f64> = evaluate(&angles)?.iter().map(|p| p.ln()).collect();
     let mut open = vec![true; angles.len() - 1];
     for _ in 0..MAX_DEPTH {
         let middles: Vec<f64> = (0..open.len())
@@ -52,7 +53,7 @@ pub(super) fn adapt(
             break;
         }
         let guesses = between_samples(&angles, &logs, &middles);
-        let mut values = evaluate(&middles).into_iter().map(f64::ln);
+        let mut values = evaluate(&middles)?.into_iter().map(f64::ln);
         let mut guesses = guesses.into_iter();
         let (mut next, mut next_logs, mut next_open) = (vec![], vec![], vec![]);
         for i in 0..open.len() {
@@ -73,7 +74,7 @@ pub(super) fn adapt(
         next_logs.push(logs[logs.len() - 1]);
         (angles, logs, open) = (next, next_logs, next_open);
     }
-    angles
+    Ok(angles)
 }
 
 #[cfg(test)]
@@ -83,8 +84,8 @@ mod tests {
     #[test]
     fn adaptation_resolves_a_narrow_peak_and_a_ring() {
         let f = |a: f64| 1e6 * (-a * a * 4e6).exp() + 1.0 + (-((a - 2.45) / 0.01).powi(2)).exp();
-        let evaluate = |angles: &[f64]| angles.iter().map(|&a| f(a)).collect::<Vec<_>>();
-        let angles = adapt(1e3, &[], 0.01, evaluate);
+        let evaluate = |angles: &[f64]| Ok(angles.iter().map(|&a| f(a)).collect::<Vec<_>>());
+        let angles = adapt(1e3, &[], 0.01, evaluate).unwrap();
         assert!(angles.len() < 400, "{}", angles.len());
         let logs: Vec<f64> = angles.iter().map(|&a| f(a).ln()).collect();
         let probes: Vec<f64> = (1..30_000)

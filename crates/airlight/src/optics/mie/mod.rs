@@ -28,6 +28,8 @@ pub use shared::DropTable;
 pub use sizes::{SizeDistribution, SizeNode};
 pub use sphere::{Efficiencies, Sphere};
 
+use crate::control::Cancelled;
+
 /// Largest supported size parameter: a drop of 1 cm at 600 nm.
 pub(crate) const LARGEST_SIZE_PARAMETER: f64 = 1e5;
 /// Largest supported modulus of a refractive index.
@@ -66,4 +68,7 @@ pub enum MieError {
     /// The wavelengths do not make a table of a phase function.
     #[error(transparent)]
     Phase(#[from] super::phase_error::PhaseError),
+    /// The caller cancelled the computation.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }

@@ -7,6 +7,7 @@ use super::matrix::ScatteringMatrix;
 use super::sizes::{MIN_SIZES, Steps};
 use super::sphere::check_index;
 use super::{LARGEST_SIZE_PARAMETER, MieError, SizeDistribution, SizeNode};
+use crate::control::{Cancelled, Control};
 use crate::math::parallel;
 use crate::math::simd::vectorized;
 use crate::optics::{RefractiveIndex, TabulatedPhase};
@@ -120,7 +121,20 @@ impl Particles {
     /// # Errors
     /// [`MieError`] if the wavelength is not positive, or a size parameter is too large.
     pub fn bulk(&self, wavelength_nm: f64) -> Result<BulkOptics, MieError> {
-        Ok(self.bulk_of(wavelength_nm, &self.prepare(wavelength_nm, STEPS)?))
+        self.bulk_with(wavelength_nm, Control::default())
+    }
+
+    /// As [`Particles::bulk`], with cancellation.
+    ///
+    /// # Errors
+    /// As [`Particles::bulk`], and if the caller cancelled.
+    pub fn bulk_with(
+        &self,
+        wavelength_nm: f64,
+        control: Control<'_>,
+    ) -> Result<BulkOptics, MieError> {
+        let prepared = self.prepare(wavelength_nm, STEPS, control)?;
+        Ok(self.bulk_of(wavelength_nm, &prepared))
     }
 
     fn bulk_of(&self, wavelength_nm: f64, prepared: &Prepared) -> BulkOptics {
@@ -145,7 +159,21 @@ impl Particles {
         wavelength_nm: f64,
         cosines: &[f64],
     ) -> Result<Vec<ScatteringMatrix>, MieError> {
-        Ok(self.prepare(wavelength_nm, STEPS)?.matrices(cosines))
+        self.matrices_with(wavelength_nm, cosines, Control::default())
+    }
+
+    /// As [`Particles::matrices`], with cancellation.
+    ///
+    /// # Errors
+    /// As [`Particles::matrices`], and if the caller cancelled.
+    pub fn matrices_with(
+        &self,
+        wavelength_nm: f64,
+        cosines: &[f64],
+        control: Control<'_>,
+    ) -> Result<Vec<ScatteringMatrix>, MieError> {
+        let prepared = self.prepare(wavelength_nm, STEPS, control)?;
+        Ok(prepared.matrices(cosines, control)?)
     }
 
     /// Tables of the phase function and scattering matrix at wavelengths (nm, increasing), and the bulk properties at each.
@@ -159,7 +187,19 @@ impl Particles {
         &self,
         wavelengths_nm: &[f64],
     ) -> Result<(TabulatedPhase, Vec<BulkOptics>), MieError> {
-        self.table_in(wavelengths_nm, STEPS, TOLERANCE)
+        self.table_with(wavelengths_nm, Control::default())
+    }
+
+    /// As [`Particles::table`], with cancellation.
+    ///
+    /// # Errors
+    /// As [`Particles::table`], and if the caller cancelled.
+    pub fn table_with(
+        &self,
+        wavelengths_nm: &[f64],
+        control: Control<'_>,
+    ) -> Result<(TabulatedPhase, Vec<BulkOptics>), MieError> {
+        self.table_in(wavelengths_nm, STEPS, TOLERANCE, control)
     }
 
     /// As [`Particles::table`], with sums over `finer` times as many sizes, which take as many times longer: the resonances of
@@ -176,7 +216,8 @@ impl Particles {
         finer: f64,
     ) -> Result<(TabulatedPhase, Vec<BulkOptics>), MieError> {
         assert!(finer >= 1.0, "expected a factor of at least 1, got {finer}");
-        self.table_in(wavelengths_nm, STEPS.times(finer.recip()), TOLERANCE)
+        let steps = STEPS.times(finer.recip());
+        self.table_in(wavelengths_nm, steps, TOLERANCE, Control::default())
     }
 
     /// As [`Particles::table`], but faster, for broad distributions, which average out resonances: with size steps wider by the
@@ -186,9 +227,10 @@ impl Particles {
         wavelengths_nm: &[f64],
         wider: f64,
         tolerance: f64,
+        control: Control<'_>,
     ) -> Result<(TabulatedPhase, Vec<BulkOptics>), MieError> {
         let size = wider * STEPS.size;
-        self.table_in(wavelengths_nm, Steps { size, ..STEPS }, tolerance)
+        self.table_in(wavelengths_nm, Steps { size, ..STEPS }, tolerance, control)
     }
 
     fn table_in(
@@ -196,30 +238,31 @@ impl Particles {
         wavelengths_nm: &[f64],
         steps: Steps,
         tolerance: f64,
+        control: Control<'_>,
     ) -> Result<(TabulatedPhase, Vec<BulkOptics>), MieError> {
         let mut angles: Vec<f64> = Vec::new();
         let matrices = |prepared: &Prepared, angles: &[f64]| {
             let cosines: Vec<f64> = angles.iter().map(|a| a.cos()).collect();
-            prepared.matrices(&cosines)
+            prepared.matrices(&cosines, control)
         };
         let phase = |prepared: &Prepared, angles: &[f64]| {
-            let matrices = matrices(prepared, angles);
-            matrices.into_iter().map(|matrix| matrix.f11).collect()
+            let matrices = matrices(prepared, angles)?;
+            Ok(matrices.into_iter().map(|matrix| matrix.f11).collect())
         };
         let radius_um = self.sizes.mean_power(6.0).powf(1.0 / 6.0);
         if let [first, .., last] | [first @ last] = wavelengths_nm {
             for nm in [first, last] {
-                let prepared = self.prepare(*nm, steps)?;
+                let prepared = self.prepare(*nm, steps, control)?;
                 let x = TAU * 1e3 * radius_um / nm;
-                angles = adapt(x, &angles, tolerance, |angles| phase(&prepared, angles));
+                angles = adapt(x, &angles, tolerance, |angles| phase(&prepared, angles))?;
             }
         }
         let mut values = Vec::with_capacity(angles.len() * wavelengths_nm.len());
         let mut ratios = Vec::with_capacity(values.capacity());
         let mut bulk = Vec::with_capacity(wavelengths_nm.len());
         for &nm in wavelengths_nm {
-            let prepared = self.prepare(nm, steps)?;
-            for matrix in matrices(&prepared, &angles) {
+            let prepared = self.prepare(nm, steps, control)?;
+            for matrix in matrices(&prepared, &angles)? {
                 values.push(matrix.f11);
                 ratios.push([matrix.f12, matrix.f33, matrix.f34].map(|f| f / matrix.f11));
             }
@@ -235,7 +278,12 @@ impl Particles {
     }
 
     /// Computes the coefficients of spheres of all sizes.
-    fn prepare(&self, wavelength_nm: f64, steps: Steps) -> Result<Prepared, MieError> {
+    fn prepare(
+        &self,
+        wavelength_nm: f64,
+        steps: Steps,
+        control: Control<'_>,
+    ) -> Result<Prepared, MieError> {
         if !(wavelength_nm.is_finite() && wavelength_nm > 0.0) {
             return Err(MieError::Wavelength(wavelength_nm));
         }
@@ -250,7 +298,8 @@ impl Particles {
         // Neighbouring sizes share buffers.
         /// Share of the number; scattering, absorption and forward sums; coefficients.
         type Sized = (f64, [f64; 3], Vec<Pair>);
-        let parts: Vec<Vec<Sized>> = parallel::map_chunks(&nodes, 16, |nodes| {
+        let parts: Vec<Vec<Sized>> = parallel::try_map_chunks(&nodes, 16, |nodes| {
+            control.check()?;
             let mut coefficients = Coefficients::default();
             let sphere = |node: &SizeNode| {
                 coefficients.fill(size_per_um * node.radius_um, index);
@@ -263,8 +312,8 @@ impl Particles {
                 let factor = coefficients.scattered.sqrt().recip();
                 (node.share, sums, pairs(&coefficients, factor).collect())
             };
-            nodes.iter().map(sphere).collect()
-        });
+            Ok::<_, Cancelled>(nodes.iter().map(sphere).collect())
+        })?;
         let mut prepared = Prepared {
             sizes: Vec::with_capacity(nodes.len()),
             pairs: Vec::new(),
@@ -302,15 +351,20 @@ impl Particles {
 }
 
 impl Prepared {
-    fn matrices(&self, cosines: &[f64]) -> Vec<ScatteringMatrix> {
+    fn matrices(
+        &self,
+        cosines: &[f64],
+        control: Control<'_>,
+    ) -> Result<Vec<ScatteringMatrix>, Cancelled> {
         let scale = 0.5 / (PI * self.scattered);
-        let blocks = parallel::map_chunks(cosines, LANES, |cosines| {
+        let blocks = parallel::try_map_chunks(cosines, LANES, |cosines| {
+            control.check()?;
             let last = cosines[cosines.len() - 1];
             let padded = std::array::from_fn(|lane| *cosines.get(lane).unwrap_or(&last));
-            self.block(&Angles::new(&padded, self.max_terms))
-        });
+            Ok(self.block(&Angles::new(&padded, self.max_terms)))
+        })?;
         let all = blocks.into_iter().flatten().take(cosines.len());
-        all.map(|matrix| matrix.scaled(scale)).collect()
+        Ok(all.map(|matrix| matrix.scaled(scale)).collect())
     }
 
     /// Sums over the sizes at a block of angles.

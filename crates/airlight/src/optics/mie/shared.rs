@@ -2,6 +2,7 @@
 
 use super::droplets::Drops;
 use super::{BulkOptics, MieError, Particles};
+use crate::control::Control;
 use crate::optics::TabulatedPhase;
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
@@ -38,6 +39,18 @@ impl Drops {
     /// # Errors
     /// As [`Particles::table`].
     pub fn table(self, wavelengths_nm: &[f64]) -> Result<Arc<DropTable>, MieError> {
+        self.table_with(wavelengths_nm, Control::default())
+    }
+
+    /// As [`Drops::table`], with cancellation.
+    ///
+    /// # Errors
+    /// As [`Drops::table`], and if the caller cancelled.
+    pub fn table_with(
+        self,
+        wavelengths_nm: &[f64],
+        control: Control<'_>,
+    ) -> Result<Arc<DropTable>, MieError> {
         let tables = || TABLES.lock().unwrap_or_else(PoisonError::into_inner);
         let bits = wavelengths_nm.iter().map(|nm| nm.to_bits()).collect();
         let key = (self, bits);
@@ -46,7 +59,7 @@ impl Drops {
         }
         let table = match self.stored_table(wavelengths_nm) {
             Some(table) => table,
-            None => self.computed_table(wavelengths_nm)?,
+            None => self.computed_table_with(wavelengths_nm, control)?,
         };
         Ok(tables().entry(key).or_insert(Arc::new(table)).clone())
     }
@@ -56,9 +69,17 @@ impl Drops {
     /// # Errors
     /// As [`Particles::table`].
     pub fn computed_table(self, wavelengths_nm: &[f64]) -> Result<DropTable, MieError> {
+        self.computed_table_with(wavelengths_nm, Control::default())
+    }
+
+    fn computed_table_with(
+        self,
+        wavelengths_nm: &[f64],
+        control: Control<'_>,
+    ) -> Result<DropTable, MieError> {
         let water = Particles::water(self.sizes())?;
-        let (phase, bulk) = water.table(wavelengths_nm)?;
-        let green = water.bulk(GREEN_NM)?;
+        let (phase, bulk) = water.table_with(wavelengths_nm, control)?;
+        let green = water.bulk_with(GREEN_NM, control)?;
         Ok(DropTable { phase, bulk, green })
     }
 }

@@ -3,6 +3,7 @@
 use super::{SPECTRAL, path_optics, sky};
 use crate::atmosphere::presets;
 use crate::axes::direction;
+use crate::control::Control;
 use crate::scene::aerial::AerialPerspective;
 use crate::scene::lane_channels::LaneChannels;
 use crate::sky::{Sky, SkySettings, SunCoverage, View};
@@ -112,7 +113,7 @@ fn rgb(view: &View, space: RgbSpace, direction: DVec3, distance: f64) -> ([f64; 
 fn points_beyond_ground_and_limit_are_held_there() {
     let sky = sky("average", SunCoverage::near(30.0, 2.0));
     let view = sky.view(2.0, direction(90.0, 30.0));
-    let table = AerialPerspective::<3>::new(&view, SPECTRAL, 50e3).unwrap();
+    let table = AerialPerspective::<3>::new(&view, SPECTRAL, 50e3, Control::default()).unwrap();
     for (elevation, far) in [(-10.0, 100.0), (-0.5, 5e3), (5.0, 50e3), (90.0, 50e3)] {
         let line = direction(33.0, elevation);
         assert_eq!(
@@ -123,11 +124,19 @@ fn points_beyond_ground_and_limit_are_held_there() {
         assert_eq!(table.optics(line, 0.0), PathOptics::CLEAR);
     }
     for limit in [0.0, -1.0, f64::NAN] {
-        assert!(AerialPerspective::<3>::new(&view, SPECTRAL, limit).is_err());
+        assert!(AerialPerspective::<3>::new(&view, SPECTRAL, limit, Control::default()).is_err());
     }
-    assert!(AerialPerspective::<4>::new(&view, LaneChannels::Rgb(RgbSpace::Srgb), 1e5).is_err());
+    assert!(
+        AerialPerspective::<4>::new(
+            &view,
+            LaneChannels::Rgb(RgbSpace::Srgb),
+            1e5,
+            Control::default()
+        )
+        .is_err()
+    );
     let beyond = LaneChannels::Wavelengths { first: 3 };
-    assert!(AerialPerspective::<3>::new(&view, beyond, 1e5).is_err());
+    assert!(AerialPerspective::<3>::new(&view, beyond, 1e5, Control::default()).is_err());
 }
 
 /// The table beside the sky that it was filled from.
@@ -145,15 +154,21 @@ mod guards {
             let sky = sky("average", SunCoverage::near(sun_deg, altitude_m));
             let view = sky.view(altitude_m, direction(180.0, sun_deg));
             let lines = lines(view.sun(), -1.0, limit_m.min(1e6), 400);
-            let table = AerialPerspective::<3>::new(&view, SPECTRAL, limit_m).unwrap();
+            let table =
+                AerialPerspective::<3>::new(&view, SPECTRAL, limit_m, Control::default()).unwrap();
             let (path, dimming) = errors(&table, &lines, |d, m| spectral(&view, d, m));
             assert!(path[path.len() * 99 / 100].0 < at_99, "{sun_deg}: {path:?}");
             assert!(path[path.len() - 1].0 < worst, "{sun_deg}: {path:?}");
             assert!(dimming[dimming.len() - 1] < 5e-3);
             // The same in colour.
             let space = RgbSpace::Rec2020;
-            let table =
-                AerialPerspective::<3>::new(&view, LaneChannels::Rgb(space), limit_m).unwrap();
+            let table = AerialPerspective::<3>::new(
+                &view,
+                LaneChannels::Rgb(space),
+                limit_m,
+                Control::default(),
+            )
+            .unwrap();
             let (path, dimming) = errors(&table, &lines, |d, m| rgb(&view, space, d, m));
             assert!(path[path.len() * 99 / 100].0 < at_99, "{sun_deg}: {path:?}");
             assert!(dimming[dimming.len() - 1] < 1e-2, "{sun_deg}");
@@ -184,7 +199,8 @@ mod guards {
             let air = presets::preset(preset).unwrap();
             let sky = Sky::prepare(&air, &WavelengthGrid::standard(), &settings).unwrap();
             let view = sky.view(altitude_m, direction(180.0, sun_deg));
-            let table = AerialPerspective::<16>::new(&view, SPECTRAL, limit_m).unwrap();
+            let table =
+                AerialPerspective::<16>::new(&view, SPECTRAL, limit_m, Control::default()).unwrap();
             let ratio: f64 = 6371e3 / (6371e3 + altitude_m);
             let horizon_deg = -ratio.acos().to_degrees();
             let lines = lines(view.sun(), horizon_deg, limit_m.min(1.5e6), 1500);

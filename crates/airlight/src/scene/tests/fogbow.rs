@@ -2,6 +2,7 @@
 
 use crate::atmosphere::{Constituent, presets};
 use crate::axes::direction;
+use crate::control::Control;
 use crate::fog::{DensityProfile, FogScattering};
 use crate::optics::mie::droplets::Drops;
 use crate::scene::foggy::FoggySky;
@@ -36,8 +37,9 @@ fn seen(drops: Drops, angles: &[f64]) -> Seen {
         nm,
     )?];
     let many = FogScattering::Multiple;
-    let rgb = FoggySky::new(&view, LaneChannels::Rgb(space), &layers, ground, many)?;
-    let spectral = FoggySky::<16>::spectral(&view, &layers, ground, many)?;
+    let (channels, control) = (LaneChannels::Rgb(space), Control::default());
+    let rgb = FoggySky::new(&view, channels, &layers, ground, many, control)?;
+    let spectral = FoggySky::<16>::spectral(&view, &layers, ground, many, control)?;
     assert_eq!(spectral.len(), 1);
     let look = |&angle: &f64| {
         let towards = direction(0.0, -SUN_DEG - angle);

@@ -3,6 +3,7 @@
 use super::{SPECTRAL, path_optics, sky};
 use crate::atmosphere::Constituent;
 use crate::axes::direction;
+use crate::control::Control;
 use crate::fog::droplets::Droplets;
 use crate::fog::visibility::{Contrast, extinction_per_m};
 use crate::fog::{DensityProfile, FogScattering, Ground, RaySegment};
@@ -27,7 +28,8 @@ fn slab(top_m: f64) -> DensityProfile {
 }
 
 fn foggy(view: &View, layer: Constituent, ground: Ground) -> FoggySky<3> {
-    FoggySky::new(view, SPECTRAL, &[layer], ground, FogScattering::Single).unwrap()
+    let (scattering, control) = (FogScattering::Single, Control::default());
+    FoggySky::new(view, SPECTRAL, &[layer], ground, scattering, control).unwrap()
 }
 
 #[test]
@@ -35,9 +37,10 @@ fn changing_the_fog_of_a_sky_gives_the_bits_of_a_new_one() {
     let sky = sky("average", SunCoverage::near(20.0, 30.0));
     let view = sky.view(30.0, direction(120.0, 20.0));
     let ground = FoggySky::<3>::round_ground(&view);
+    let (scattering, control) = (FogScattering::Multiple, Control::default());
     let new = |layers: &[Constituent]| {
         let channels = LaneChannels::Rgb(RgbSpace::Srgb);
-        FoggySky::<3>::new(&view, channels, layers, ground, FogScattering::Multiple).unwrap()
+        FoggySky::<3>::new(&view, channels, layers, ground, scattering, control).unwrap()
     };
     let first = new(&[layer(300.0, slab(40.0))]);
     // As high, and higher.
@@ -45,7 +48,7 @@ fn changing_the_fog_of_a_sky_gives_the_bits_of_a_new_one() {
         let other = [other];
         let (new_sky, changed) = (
             new(&other),
-            first.with_fog(&other, FogScattering::Multiple).unwrap(),
+            first.with_fog(&other, scattering, control).unwrap(),
         );
         for (azimuth, elevation, distance_m) in [
             (100.0, 1.0, f64::INFINITY),
@@ -66,7 +69,7 @@ fn changing_the_fog_of_a_sky_gives_the_bits_of_a_new_one() {
     }
     assert!(
         first
-            .with_fog(&[layer(-1.0, slab(4.0))], FogScattering::Multiple)
+            .with_fog(&[layer(-1.0, slab(4.0))], scattering, control)
             .is_err()
     );
 }
@@ -294,6 +297,7 @@ mod guards {
             &[layer(300.0, thinning(100.0))],
             ground,
             FogScattering::Single,
+            Control::default(),
         )
         .unwrap();
         let spectral = super::foggy(&view, layer(300.0, thinning(100.0)), ground);
@@ -318,7 +322,8 @@ mod guards {
         let ground = FoggySky::<3>::round_ground(&view);
         let share = |visibility_m: f64, scattering| {
             let fog = [layer(visibility_m, slab(100.0))];
-            let foggy = FoggySky::new(&view, SPECTRAL, &fog, ground, scattering).unwrap();
+            let control = Control::default();
+            let foggy = FoggySky::new(&view, SPECTRAL, &fog, ground, scattering, control).unwrap();
             if let Some(irradiance) = foggy.fog.ground_irradiance() {
                 // The ground as the fog has it, seen through fog and air.
                 let lit = irradiance * albedo / std::f32::consts::PI;

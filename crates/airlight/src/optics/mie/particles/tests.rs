@@ -31,8 +31,9 @@ fn sums_over_sizes_converge() {
         [(drops(2.5), 6e-3, 0.03, 5e-4), (haze, 1e-6, 1e-5, 1e-7)]
     {
         let at = |factor: f64| {
-            let prepared = particles.prepare(550.0, STEPS.times(factor)).unwrap();
-            let matrices = prepared.matrices(&cosines());
+            let (steps, control) = (STEPS.times(factor), Control::default());
+            let prepared = particles.prepare(550.0, steps, control).unwrap();
+            let matrices = prepared.matrices(&cosines(), control).unwrap();
             (particles.bulk_of(550.0, &prepared), matrices)
         };
         let ((bulk, matrices), (fine, fine_matrices)) = (at(1.0), at(0.2));
