@@ -70,6 +70,8 @@ pub fn apply(context: &egui::Context) {
             widget.bg_stroke = Stroke::NONE;
             widget.corner_radius = CornerRadius::same(4);
         }
+        // A ring shows where the keyboard is.
+        widgets.active.bg_stroke = Stroke::new(1.5, ACCENT);
     });
 }
 

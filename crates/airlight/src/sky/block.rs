@@ -99,6 +99,9 @@ pub struct TableRow {
     pub bundle: RayBundle,
 }
 
+/// Whether there are blocks of 8 lanes. Web pages do without their code, and fill half of 16 lanes.
+const HAS_EIGHT_LANES: bool = !cfg!(target_arch = "wasm32");
+
 /// Solves for all `wavelengths_nm` in blocks.
 ///
 /// # Errors
@@ -119,7 +122,9 @@ pub fn solve(
         };
         match chunk.len() {
             0..=4 if count == 1 => Solved::<4>::boxed(atmosphere, columns, chunk, settings, share),
-            0..=8 => Solved::<8>::boxed(atmosphere, columns, chunk, settings, share),
+            0..=8 if HAS_EIGHT_LANES => {
+                Solved::<8>::boxed(atmosphere, columns, chunk, settings, share)
+            }
             _ => Solved::<16>::boxed(atmosphere, columns, chunk, settings, share),
         }
     });
