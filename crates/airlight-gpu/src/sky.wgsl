@@ -47,9 +47,8 @@ fn disc_outside_air(direction: vec3<f32>) -> vec4<f32> {
     return textureSampleLevel(disc, linear_sampler, vec2<f32>(texel_coordinate(mu, 64.0), 0.5), 0.0);
 }
 
-/// Red, green and blue of the sun's disc, dimmed by the air: the mean over a pixel without geometry.
-fn sun_disc(in: Corner, seen: Pixel) -> vec3<f32> {
-    let pixel_size = 2.0 / vec2<f32>(textureDimensions(depth_texture));
+/// Red, green and blue of the sun's disc, dimmed by the air: the mean over a pixel without geometry, of this size in clip space.
+fn sun_disc(in: Corner, seen: Pixel, pixel_size: vec2<f32>) -> vec3<f32> {
     let reach = distance(direction_at(in.clip + 0.5 * pixel_size), seen.direction);
     let radius = sqrt(2.0 * sky.disc_one_minus_cos);
     let away = sqrt(2.0 * one_minus_cos_between(seen.direction, sky.view.sun));
@@ -90,10 +89,12 @@ fn dim(in: Corner) -> @location(0) vec4<f32> {
 @fragment
 fn add(in: Corner) -> @location(0) vec4<f32> {
     let seen = pixel(in);
+    // Not from the size of the depth texture, which is wrong in WebGL.
+    let pixel_size = vec2<f32>(dpdx(in.clip.x), dpdy(in.clip.y));
     var light = vec3<f32>(0.0);
     if seen.distance_m < 0.0 {
         let radiance = sky_radiance(sky.view, sky.scales, sky_smooth, sky_haze, phase, linear_sampler, seen.direction);
-        light = sun_disc(in, seen) + rgb_from_spectrum(sky.radiance_weights, radiance);
+        light = sun_disc(in, seen, pixel_size) + rgb_from_spectrum(sky.radiance_weights, radiance);
     } else {
         light = rgb_from_spectrum(sky.radiance_weights, air_to(seen).path_radiance);
     }

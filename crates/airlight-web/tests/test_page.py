@@ -97,6 +97,8 @@ def test_page_shows_what_the_desktop_shows(opened, tmp_path, fragment, browser):
     # A level of 255 is at most 1.2 % of the light.
     assert numpy.quantile(apart, 0.99) <= 1
     assert apart.mean() < 0.3
+    # No single bright dot, and the same disc of the sun.
+    assert apart.max() <= 4
 
 
 def test_keys_move_the_sun_and_the_address_keeps_it(opened, tmp_path):
