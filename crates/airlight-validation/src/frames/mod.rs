@@ -230,6 +230,7 @@ pub fn against_monte_carlo(
     control: Control<'_>,
 ) -> Result<Vec<Row>, FramesError> {
     control.stage("comparing frames with Monte Carlo", cases.len() as u64);
+    let quiet = control.without_progress();
     let grid = WavelengthGrid::standard();
     let mut rows = Vec::new();
     let mut done = 0;
@@ -244,9 +245,9 @@ pub fn against_monte_carlo(
             control.check()?;
             let subject = air.draw(case, directions, done * directions)?;
             for (pixel, ours) in subject.pixels.iter().zip(&subject.drawn) {
-                let light = truth
-                    .polarised(case.height_m, case.sun(), pixel.direction, None)
-                    .radiance();
+                let (eye_m, sun) = (case.height_m, case.sun());
+                let light = truth.polarised_with(eye_m, sun, pixel.direction, None, quiet)?;
+                let light = light.radiance();
                 // Wavelengths share their paths, so that their errors add up.
                 let [right, error] = [light.mean, light.standard_error].map(|light| {
                     let light: Vec<f32> = light.into_iter().map(|v| v as f32).collect();
