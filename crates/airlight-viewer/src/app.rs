@@ -6,7 +6,7 @@ use crate::compute::{Answer, Facts, Light, Output, Request, SPACE, Task};
 use crate::examples::{self, EXAMPLES};
 use crate::options::Options;
 #[cfg(not(target_arch = "wasm32"))]
-use crate::photograph::{self, Darkroom, Developed};
+use crate::photograph::{self, FoggedPhotograph, PhotographWorker};
 use crate::picture::{Ground, Picture, Shot, tone_mapper, tone_of};
 use crate::platform::Worker;
 use crate::play::Play;
@@ -114,10 +114,10 @@ pub struct Viewer {
     /// The lights in the picture, or why there are none.
     lights: Result<Vec<FogLight<[f32; 3]>>, String>,
     #[cfg(not(target_arch = "wasm32"))]
-    darkroom: Darkroom,
+    photographs: PhotographWorker,
     /// The photograph on the screen, and what it was fogged with.
     #[cfg(not(target_arch = "wasm32"))]
-    developed: Option<(OverlayScene, egui::TextureHandle)>,
+    fogged_texture: Option<(OverlayScene, egui::TextureHandle)>,
     /// Why a file was not opened or saved.
     notice: Option<String>,
     /// Name of a file to open or save.
@@ -168,7 +168,7 @@ impl Viewer {
         let repaint = context.clone();
         let beside = context.clone();
         #[cfg(not(target_arch = "wasm32"))]
-        let darkroom = context.clone();
+        let photographs = context.clone();
         let is_lost = Arc::new(AtomicBool::new(false));
         let lost = is_lost.clone();
         render
@@ -202,9 +202,9 @@ impl Viewer {
             terrain: None,
             lights: Ok(Vec::new()),
             #[cfg(not(target_arch = "wasm32"))]
-            darkroom: Darkroom::new(move || darkroom.request_repaint()),
+            photographs: PhotographWorker::new(move || photographs.request_repaint()),
             #[cfg(not(target_arch = "wasm32"))]
-            developed: None,
+            fogged_texture: None,
             notice: None,
             #[cfg(not(target_arch = "wasm32"))]
             file: "scene.toml".to_owned(),
@@ -235,7 +235,7 @@ impl Viewer {
     pub fn is_current(&self) -> bool {
         #[cfg(not(target_arch = "wasm32"))]
         if let Some(scene) = self.fogged() {
-            return self.darkroom.is_current(&scene);
+            return self.photographs.is_current(&scene);
         }
         let has_light =
             self.asked.is_none() && self.answered.as_ref() == Some(&self.state.lit_scene());
@@ -342,9 +342,9 @@ impl Viewer {
 
     /// The photograph in fog that is shown.
     #[cfg(not(target_arch = "wasm32"))]
-    pub fn photograph(&self) -> Option<Result<&Developed, &str>> {
+    pub fn photograph(&self) -> Option<Result<&FoggedPhotograph, &str>> {
         self.state.photograph.as_ref()?;
-        self.darkroom.answer()
+        self.photographs.answer()
     }
 
     /// The photograph and its fog.
@@ -619,7 +619,7 @@ impl Viewer {
     #[cfg(not(target_arch = "wasm32"))]
     pub fn wait(&mut self) {
         if self.state.photograph.is_some() {
-            self.darkroom.wait();
+            self.photographs.wait();
             return;
         }
         if self.asked.is_some()
@@ -706,20 +706,20 @@ impl Viewer {
     fn show_photograph(&mut self, ui: &mut Ui) {
         let area = ui.available_rect_before_wrap();
         if let Some(scene) = self.fogged() {
-            self.darkroom.update(&scene);
+            self.photographs.update(&scene);
         }
-        if let Some(Ok(developed)) = self.darkroom.answer() {
-            let is_shown = |(of, _): &(OverlayScene, _)| *of == developed.scene;
-            if !self.developed.as_ref().is_some_and(is_shown) {
-                let size = developed.size.map(|v| v as usize);
-                let image = egui::ColorImage::from_rgb(size, &developed.rgb);
+        if let Some(Ok(fogged)) = self.photographs.answer() {
+            let is_shown = |(of, _): &(OverlayScene, _)| *of == fogged.scene;
+            if !self.fogged_texture.as_ref().is_some_and(is_shown) {
+                let size = fogged.size.map(|v| v as usize);
+                let image = egui::ColorImage::from_rgb(size, &fogged.rgb);
                 let options = egui::TextureOptions::LINEAR;
                 let texture = ui.ctx().load_texture("photograph", image, options);
-                self.developed = Some((developed.scene.clone(), texture));
+                self.fogged_texture = Some((fogged.scene.clone(), texture));
                 self.frames += 1;
             }
         }
-        if let Some((_, texture)) = &self.developed {
+        if let Some((_, texture)) = &self.fogged_texture {
             let size = texture.size_vec2();
             let scale = (area.size() / size).min_elem();
             let at = Rect::from_center_size(area.center(), size * scale);

@@ -48,7 +48,7 @@ pub use options::Options;
 #[cfg(target_arch = "wasm32")]
 pub use page::run_in_page;
 #[cfg(not(target_arch = "wasm32"))]
-pub use photograph::Developed;
+pub use photograph::FoggedPhotograph;
 pub use state::State;
 #[cfg(not(target_arch = "wasm32"))]
 pub use window::run;

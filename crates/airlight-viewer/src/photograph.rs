@@ -1,4 +1,4 @@
-//! [`Darkroom`]: fog over a photograph with depth, computed on a thread beside the window.
+//! [`PhotographWorker`]: fog over a photograph with depth, computed on a thread beside the window.
 
 use crate::state::State;
 use airlight::scene::{FogSpec, Scene};
@@ -18,7 +18,7 @@ const VISIBILITY_M: f64 = 50.0;
 
 /// A photograph in fog, as a display shows it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Developed {
+pub struct FoggedPhotograph {
     /// What was fogged.
     pub scene: OverlayScene,
     /// Width and height, pixels.
@@ -28,18 +28,18 @@ pub struct Developed {
 }
 
 /// A request, and what became of it: a picture, or why there is none, as a sentence.
-type Answer = (OverlayScene, Result<Developed, String>);
+type Answer = (OverlayScene, Result<FoggedPhotograph, String>);
 
 /// Puts fog over photographs, the newest request first.
 #[derive(Debug)]
-pub struct Darkroom {
+pub struct PhotographWorker {
     requests: Sender<OverlayScene>,
     answers: Receiver<Answer>,
     asked: Option<OverlayScene>,
     answer: Option<Answer>,
 }
 
-impl Darkroom {
+impl PhotographWorker {
     /// Starts the thread, which calls `wake` after each picture.
     pub fn new(wake: impl Fn() + Send + 'static) -> Self {
         let (requests, to_do) = channel::<OverlayScene>();
@@ -48,9 +48,9 @@ impl Darkroom {
         let _ = std::thread::Builder::new()
             .name("airlight photograph".to_owned())
             .spawn(move || {
-                let mut negative = Negative::default();
+                let mut prepared = PreparedPhotograph::default();
                 while let Ok(scene) = to_do.recv() {
-                    let result = negative.develop(&scene).map_err(|error| error.to_string());
+                    let result = prepared.fog(&scene).map_err(|error| error.to_string());
                     if done.send((scene, result)).is_err() {
                         return;
                     }
@@ -98,7 +98,7 @@ impl Darkroom {
     }
 
     /// The last answer.
-    pub fn answer(&self) -> Option<Result<&Developed, &str>> {
+    pub fn answer(&self) -> Option<Result<&FoggedPhotograph, &str>> {
         let (_, result) = self.answer.as_ref()?;
         Some(result.as_ref().map_err(String::as_str))
     }
@@ -106,13 +106,13 @@ impl Darkroom {
 
 /// What of a photograph stays while its fog changes.
 #[derive(Debug, Default)]
-struct Negative {
+struct PreparedPhotograph {
     image: Option<(OverlaySpec, OverlayImage)>,
     sky: Option<(OverlayScene, Option<SkyLight>)>,
 }
 
-impl Negative {
-    fn develop(&mut self, scene: &OverlayScene) -> Result<Developed, RenderError> {
+impl PreparedPhotograph {
+    fn fog(&mut self, scene: &OverlayScene) -> Result<FoggedPhotograph, RenderError> {
         // Without opacity, which the window does not show.
         const SHOWN: PictureFormat = PictureFormat::JPEG;
         scene.check()?;
@@ -148,7 +148,7 @@ impl Negative {
         for (y, (linear, out)) in (0..).zip(linear.chunks(row).zip(rgb.chunks_mut(row))) {
             rows.tone().row_to_u8(y, linear, out);
         }
-        Ok(Developed {
+        Ok(FoggedPhotograph {
             scene: scene.clone(),
             size: [size.width(), size.height()],
             rgb,

@@ -683,9 +683,9 @@ fn a_photograph_is_fogged_as_the_library_does() {
         state.photograph.as_mut().unwrap().sun_strength = sun_strength;
         window.state_mut().set_state(state.clone());
         settle(&mut window);
-        let developed = window.state().photograph().unwrap().unwrap().clone();
-        assert_eq!(developed.size, [741, 500]);
-        assert_ne!(developed.rgb, before);
+        let fogged = window.state().photograph().unwrap().unwrap().clone();
+        assert_eq!(fogged.size, [741, 500]);
+        assert_ne!(fogged.rgb, before);
         // The description that is saved, read and fogged by the library.
         window.state_mut().save(&toml).unwrap();
         let text = std::fs::read_to_string(&toml).unwrap();
@@ -701,11 +701,11 @@ fn a_photograph_is_fogged_as_the_library_does() {
             std::fs::read(&right).unwrap()
         );
         let right = read_picture(&right, None).unwrap();
-        for (level, right) in developed.rgb.iter().zip(&right.rgb) {
+        for (level, right) in fogged.rgb.iter().zip(&right.rgb) {
             let light = srgb_decode(f64::from(*level) / 255.0) as f32;
             assert!((light - right).abs() < 1e-5, "{light} {right}");
         }
-        before = developed.rgb;
+        before = fogged.rgb;
     }
     // Without depth there is no fog.
     state.photograph.as_mut().unwrap().depth = None;
