@@ -7,7 +7,7 @@
 //! [`SkySolver`] and [`SkyPasses`] are its two halves, for programs that compute on a thread or in a worker of their own. [`TonePass`]
 //! shows a frame on a display.
 //! Nothing is computed again when only the camera turns. [`Lighting`] is the light of sun and sky for the program's own surfaces,
-//! [`EnvironmentMap`] what they reflect. [`TerrainPass`] draws ground of given heights.
+//! [`EnvironmentMap`] what they reflect. [`TerrainPass`] draws ground of given heights, [`TerrainPoint`] finds what a ray sees of it.
 //!
 //! The eye is the origin, y is up at the eye, distances are in metres, light is in cd/m^2 times an exposure.
 
@@ -28,6 +28,7 @@ mod read;
 mod renderer;
 mod sky;
 mod terrain;
+mod terrain_point;
 mod tone;
 
 pub use camera::{Camera, Projection};
@@ -42,6 +43,7 @@ pub use passes::SkyPasses;
 pub use read::{ReadTextureError, read_rgb, read_texture};
 pub use renderer::{SkyRenderer, SkyRendererSettings, Work};
 pub use terrain::{HeightField, TerrainPass, TerrainView};
+pub use terrain_point::TerrainPoint;
 pub use tone::{ToneCurve, TonePass, ToneSettings};
 
 /// The example of the README, compiled as a test.

@@ -11,8 +11,8 @@ use glam::Vec4;
 
 /// Multiple of heights that half floats hold exactly, m.
 const WHOLE_M: f32 = 16.0;
-/// Angular radius of the sun's disc in shadows, rad.
-const SUN_RADIUS: f32 = 0.00465;
+/// Tangent of the angular radius of the sun's disc in shadows.
+pub(crate) const SUN_TANGENT: f64 = 0.00465;
 /// Format of the depth that is drawn.
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
@@ -22,6 +22,9 @@ pub struct HeightField {
     size: [usize; 2],
     spacing_m: [f64; 2],
     heights_m: Vec<f32>,
+    highest_m: f32,
+    /// Tangent of the steepest slope between posts.
+    steepest: f32,
 }
 
 impl HeightField {
@@ -53,11 +56,15 @@ impl HeightField {
         if let Some(wrong) = heights_m.iter().find(|h| !(0.0..=32_000.0).contains(*h)) {
             return refuse(format!("a height of {wrong} m"));
         }
-        Ok(Self {
+        let mut field = Self {
             size,
             spacing_m,
+            highest_m: heights_m.iter().copied().fold(0.0, f32::max),
             heights_m,
-        })
+            steepest: 0.0,
+        };
+        field.steepest = field.steepest_between_posts();
+        Ok(field)
     }
 
     /// Number of columns and of rows.
@@ -72,19 +79,42 @@ impl HeightField {
 
     /// The greatest height, m.
     pub fn highest_m(&self) -> f32 {
-        self.heights_m.iter().copied().fold(0.0, f32::max)
+        self.highest_m
+    }
+
+    /// Tangent of the steepest slope.
+    pub(crate) fn steepest(&self) -> f32 {
+        self.steepest
     }
 
     /// Height of the ground, m, at a place to the east and south of the middle of the grid, m.
-    pub fn height_m(&self, [east_m, south_m]: [f64; 2]) -> f64 {
+    pub fn height_m(&self, place_m: [f64; 2]) -> f64 {
+        let [height_m] = self.between_posts(place_m, |i, j| [f64::from(self.post(i, j))]);
+        height_m
+    }
+
+    /// Rise per metre to the east and to the south, at a place as in [`Self::height_m`].
+    pub(crate) fn slope_at(&self, place_m: [f64; 2]) -> [f32; 2] {
+        let slope = self.between_posts(place_m, |i, j| self.slope(i, j).map(f64::from));
+        slope.map(|rise| rise as f32)
+    }
+
+    /// Values at posts, interpolated at a place.
+    fn between_posts<const N: usize>(
+        &self,
+        [east_m, south_m]: [f64; 2],
+        post: impl Fn(i64, i64) -> [f64; N],
+    ) -> [f64; N] {
         let place = |metres: f64, axis: usize| {
             let at = metres / self.spacing_m[axis] + 0.5 * self.size[axis] as f64 - 0.5;
             (at.floor() as i64, at - at.floor())
         };
-        let ((column, x), (row, y)) = (place(east_m, 0), place(south_m, 1));
-        let post = |i, j| f64::from(self.post(column + i, row + j));
-        let along = |j| post(0, j) * (1.0 - x) + post(1, j) * x;
-        along(0) * (1.0 - y) + along(1) * y
+        let ((i, x), (j, y)) = (place(east_m, 0), place(south_m, 1));
+        let mixed = |from: [f64; N], to: [f64; N], part: f64| {
+            std::array::from_fn(|k| from[k] * (1.0 - part) + to[k] * part)
+        };
+        let along = |j| mixed(post(i, j), post(i + 1, j), x);
+        mixed(along(j), along(j + 1), y)
     }
 
     /// Height at a post, which may lie beyond the edges.
@@ -96,19 +126,8 @@ impl HeightField {
         self.heights_m[mirrored(row, self.size[1]) * self.size[0] + mirrored(column, self.size[0])]
     }
 
-    /// Rise per metre to the east and to the south, at the nearest post.
-    #[cfg(test)]
-    fn slope_at(&self, [east_m, south_m]: [f64; 2]) -> [f32; 2] {
-        let nearest = |metres: f64, axis: usize| {
-            let at = metres / self.spacing_m[axis] + 0.5 * self.size[axis] as f64 - 0.5;
-            (at.round().max(0.0) as usize).min(self.size[axis] - 1)
-        };
-        self.slope(nearest(east_m, 0), nearest(south_m, 1))
-    }
-
     /// Rise per metre to the east and to the south at a post.
-    fn slope(&self, column: usize, row: usize) -> [f32; 2] {
-        let (i, j) = (column as i64, row as i64);
+    fn slope(&self, i: i64, j: i64) -> [f32; 2] {
         let per_m = self.spacing_m.map(|spacing_m| (0.5 / spacing_m) as f32);
         [
             (self.post(i + 1, j) - self.post(i - 1, j)) * per_m[0],
@@ -117,7 +136,7 @@ impl HeightField {
     }
 
     /// Tangent of the steepest slope between posts.
-    fn steepest(&self) -> f32 {
+    fn steepest_between_posts(&self) -> f32 {
         let [across_m, down_m] = self.spacing_m.map(|spacing_m| spacing_m as f32);
         let mut steepest = 0.0f32;
         for j in 0..self.size[1] as i64 {
@@ -139,7 +158,7 @@ impl HeightField {
         let texels = (0..columns * rows).map(|k| {
             let height_m = self.heights_m[k];
             let whole_m = (height_m / WHOLE_M).floor() * WHOLE_M;
-            let [east, south] = self.slope(k % columns, k / columns);
+            let [east, south] = self.slope((k % columns) as i64, (k / columns) as i64);
             Vec4::new(whole_m, height_m - whole_m, east, south)
         });
         Texture::new([columns, rows, 1], texels.collect())
@@ -328,7 +347,7 @@ fn numbers(heights: &Heights, view: &TerrainView) -> Vec<f32> {
     let mut all = view.eye_m.as_vec3().to_array().to_vec();
     all.push(view.planet_radius_m as f32);
     all.extend(light.sun.to_array());
-    all.push(SUN_RADIUS.tan());
+    all.push(SUN_TANGENT as f32);
     all.extend(light.sun_illuminance_lx.to_array());
     all.push(heights.highest_m);
     all.extend(heights.extent_m);
@@ -349,6 +368,7 @@ mod tests {
     use crate::camera::Projection;
     use crate::headless::Headless;
     use crate::read::read_texture;
+    use crate::terrain_point::TerrainPoint;
     use airlight::axes;
     use glam::Vec3;
     use std::f32::consts::{FRAC_PI_2, PI};
@@ -539,6 +559,44 @@ mod tests {
             if is_lit { lit += 1 } else { dark += 1 }
         }
         assert!(lit > 20 && dark > 20, "{lit} {dark}");
+    }
+
+    /// [`TerrainPoint`] on the processor against what is drawn, but for rays that graze the ground.
+    #[test]
+    fn points_are_those_that_are_drawn() {
+        let field = hills();
+        let eye_m = DVec3::new(120.0, field.height_m([120.0, -300.0]) + 25.0, -300.0);
+        let axes = [DVec3::X, DVec3::Y, DVec3::NEG_Z];
+        let view = TerrainView {
+            steep_albedo: [0.5, 0.4, 0.3],
+            ..view(eye_m, 12.0)
+        };
+        let (mut met, mut missed, mut others) = (0, 0, 0);
+        for (k, [luminance, distance_m]) in drawn(&field, &view, axes).into_iter().enumerate() {
+            let Some(ray) = direction(k, axes) else {
+                continue;
+            };
+            let Some(point) = TerrainPoint::along(&field, &view, ray) else {
+                if distance_m > 0.0 {
+                    others += 1
+                } else {
+                    missed += 1
+                }
+                continue;
+            };
+            let apart = (f64::from(distance_m) / point.distance_m - 1.0).abs();
+            let brighter = (luminance / point.rgb.x - 1.0).abs();
+            if apart < 2e-3 && brighter < 0.02 {
+                met += 1
+            } else {
+                others += 1
+            }
+        }
+        println!("{met} met, {missed} missed, {others} others");
+        assert!(
+            met > 500 && missed > 500 && others < 20,
+            "{met} {missed} {others}"
+        );
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use crate::beside::{Beside, Comparison, Sides, Wanted};
 use crate::command::command_line;
-use crate::compute::{Answer, Facts, Light, Output, Request, SPACE, Task};
+use crate::compute::{Answer, Facts, GroundLight, Light, Output, Request, SPACE, Target, Task};
 use crate::examples::{self, EXAMPLES};
 use crate::options::Options;
 #[cfg(not(target_arch = "wasm32"))]
@@ -10,12 +10,14 @@ use crate::photograph::{self, FoggedPhotograph, PhotographWorker};
 use crate::picture::{Ground, Picture, Shot, tone_mapper, tone_of};
 use crate::platform::Worker;
 use crate::play::Play;
+use crate::reading::Reading;
 use crate::state::{CompareMode, History, State};
+use crate::view::{Navigation, Orbit};
 use crate::widgets::choice;
 use crate::{lights, panel, reading, style, terrain, truth, view};
 use airlight::fog::lights::Light as FogLight;
 use airlight::scene::{OutputSpec, Scene};
-use airlight_gpu::{HeightField, SkyRendererError};
+use airlight_gpu::{HeightField, SkyRendererError, TerrainPoint};
 use airlight_image::Frame;
 #[cfg(not(target_arch = "wasm32"))]
 use airlight_image::rows::StoredRows;
@@ -25,6 +27,8 @@ use airlight_image::{Control, PictureOptions, Size, write_picture};
 use airlight_render::exposure::{ExposureSettings, METERED_WIDTH, MeteredPicture};
 #[cfg(not(target_arch = "wasm32"))]
 use airlight_render::overlay::{OverlayScene, OverlaySpec};
+#[cfg(not(target_arch = "wasm32"))]
+use airlight_render::{RenderError, Renderer};
 use eframe::egui::{self, Align2, Color32, FontId, Key, Rect, TextureId, Ui, pos2, vec2};
 use eframe::egui_wgpu::RenderState;
 use eframe::wgpu;
@@ -87,14 +91,19 @@ pub struct Viewer {
     play: Play,
     /// Pixels of the display along a pixel of the picture: more draw faster.
     coarseness: u32,
+    navigation: Navigation,
     dragged: Option<view::Handle>,
     worker: Worker,
     /// Taken out while it works with what else is here.
     beside: Option<Beside>,
-    /// Direction whose spectrum is shown.
+    /// Direction whose light is read.
     direction: Option<DVec3>,
+    /// A pixel of terrain: the picture that it was read in, its direction, and its red, green and blue, cd/m^2.
+    pixel: Option<(Drawn, DVec3, [f32; 3])>,
     /// The comparison on the screen, and what of it: the right side or the map, and the left side if that is a model.
     compared: Option<(Compared, [Option<egui::TextureHandle>; 2])>,
+    /// The picture that the library has drawn: its scene, and the shot that it is exposed as.
+    library_picture: Option<(Scene, Shot, egui::TextureHandle)>,
     number: u64,
     /// The scene that light is being computed for.
     asked: Option<Scene>,
@@ -182,11 +191,14 @@ impl Viewer {
             has_panel: options.panel,
             play: Play::default(),
             coarseness: 1,
+            navigation: Navigation::default(),
             dragged: None,
             worker: Worker::new(move || repaint.request_repaint()),
             beside: Some(Beside::new(move || beside.request_repaint())),
             direction: None,
+            pixel: None,
             compared: None,
+            library_picture: None,
             number: 0,
             asked: None,
             answered: None,
@@ -294,6 +306,93 @@ impl Viewer {
         })
     }
 
+    /// The terrain in a direction; `None` where there is none.
+    fn terrain_point(&self, direction: DVec3) -> Option<TerrainPoint> {
+        let view = self.picture.terrain_view(&self.ground()?)?;
+        let heights = self.terrain.as_ref()?.heights.as_ref().ok()?;
+        TerrainPoint::along(heights, &view, direction)
+    }
+
+    /// The eye, and the point of terrain or of the ground that it orbits, or where the picture shows the sky a point before it.
+    fn orbit(&self, frame: &Frame) -> Orbit {
+        /// Distance of a point before the sky relative to the height of the eye, and its least, m.
+        const AHEAD: f64 = 10.0;
+        const LEAST_AHEAD_M: f64 = 100.0;
+        let facts = self.facts();
+        let direction = view::centre(frame);
+        let [height_m, ground_radius_m] = self.picture.eye_m();
+        let altitude_m = self.state.scene.observer.altitude_m;
+        let terrain_m = self.terrain_point(direction).map(|point| point.distance_m);
+        let ground_m = || {
+            // The nearer crossing of the sphere.
+            let towards_m = -direction.y * (ground_radius_m + height_m);
+            let square = towards_m * towards_m - height_m * (2.0 * ground_radius_m + height_m);
+            (towards_m > 0.0 && square >= 0.0).then(|| towards_m - square.sqrt())
+        };
+        let ahead_m = (AHEAD * height_m).max(LEAST_AHEAD_M);
+        Orbit {
+            distance_m: terrain_m.or_else(ground_m).unwrap_or(ahead_m).max(1.0),
+            altitude_m: altitude_m.unwrap_or(facts.altitude_m),
+            lowest_m: facts.altitude_m - height_m + terrain::CLEARANCE_M,
+        }
+    }
+
+    /// What is known of the light from a direction.
+    fn reading(&self, direction: DVec3) -> Reading<'_> {
+        let facts = self.facts();
+        let point = self.terrain_point(direction);
+        let beside = self.beside.as_ref().zip(self.wanted());
+        let spectrum = beside.and_then(|(beside, wanted)| beside.spectrum(&wanted));
+        Reading {
+            direction,
+            ground: point.map(|point| {
+                let light = self.light.as_deref();
+                let ground_m = light.map_or(0.0, Light::ground_altitude_m);
+                [point.distance_m, ground_m + point.height_m]
+            }),
+            spectrum,
+            drawn: match point {
+                Some(_) => self.pixel_of(direction),
+                None => self.sky_colour(direction),
+            },
+            facts,
+        }
+    }
+
+    /// Red, green and blue of the sky that is drawn in a direction, cd/m^2.
+    fn sky_colour(&self, direction: DVec3) -> Option<[f32; 3]> {
+        let light = self.light.as_ref()?;
+        let drawn = truth::drawn(light, &[direction.as_vec3().to_array()]);
+        drawn.first().copied()
+    }
+
+    /// Red, green and blue of terrain that is drawn in a direction, cd/m^2; `None` where the device does not return them.
+    fn pixel_of(&self, direction: DVec3) -> Option<[f32; 3]> {
+        let (drawn, of, rgb) = self.pixel.as_ref()?;
+        (Some(*drawn) == self.drawn && *of == direction).then_some(*rgb)
+    }
+
+    /// Reads back the pixel of terrain that the reading is open on, unless it is that of the picture before.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn read_pixel(&mut self) {
+        let (Some(direction), Some(drawn)) = (self.direction, self.drawn) else {
+            return;
+        };
+        if self.pixel_of(direction).is_some() || self.terrain_point(direction).is_none() {
+            return;
+        }
+        let (_, shot) = drawn;
+        let Some((x, y)) = shot.frame.pixel_of(direction) else {
+            return;
+        };
+        let [width, height] = shot.size();
+        let [x, y] = [(x as u32).min(width - 1), (y as u32).min(height - 1)];
+        if let Ok((_, pixels)) = self.pixels() {
+            let rgb = pixels[(y * width + x) as usize];
+            self.pixel = Some((drawn, direction, rgb));
+        }
+    }
+
     /// Reads the heights of the terrain, and keeps the eye above them.
     fn stand_on_terrain(&mut self) {
         let Some(wanted) = &self.state.terrain else {
@@ -318,8 +417,8 @@ impl Viewer {
             return;
         };
         if let Ok(heights) = &loaded.heights {
-            let sea_m = light.facts.altitude_m - f64::from(light.tables.sky.view.height_m);
-            let ground_m = sea_m + heights.height_m([wanted.east_m, wanted.south_m]);
+            let height_m = heights.height_m([wanted.east_m, wanted.south_m]);
+            let ground_m = light.ground_altitude_m() + height_m;
             let lowest_m = ground_m + terrain::CLEARANCE_M;
             let altitude_m = &mut self.state.scene.observer.altitude_m;
             if altitude_m.unwrap_or(light.facts.altitude_m) < lowest_m {
@@ -376,8 +475,12 @@ impl Viewer {
                         ui.heading("Airlight");
                         self.show_actions(ui);
                         let state = &mut self.state;
-                        let (play, coarseness) = (&mut self.play, &mut self.coarseness);
-                        panel::show(ui, state, (play, coarseness), &facts, ev100);
+                        let shown = panel::Shown {
+                            play: &mut self.play,
+                            navigation: &mut self.navigation,
+                            coarseness: &mut self.coarseness,
+                        };
+                        panel::show(ui, state, shown, &facts, ev100);
                     });
                 });
         }
@@ -429,7 +532,12 @@ impl Viewer {
             }
         });
         let mut chosen = "";
-        let named = EXAMPLES.map(|(name, toml)| (toml, name.to_owned()));
+        let mut named = vec![("", "choose a scene".to_owned())];
+        named.extend(
+            EXAMPLES
+                .iter()
+                .map(|(name, toml)| (*toml, (*name).to_owned())),
+        );
         if choice(ui, "Examples", &mut chosen, &named)
             && let Some(state) = examples::state(chosen)
         {
@@ -501,6 +609,10 @@ impl Viewer {
         if let Some(scene) = self.fogged() {
             return photograph::save(&scene, file).map_err(|error| error.to_string());
         }
+        if self.state.is_drawn_by_library() {
+            let size = self.saved_size()?;
+            return save_by_library(&self.state.scene, size, file).map_err(|e| e.to_string());
+        }
         let shot = self.saved_shot()?;
         let mapper = tone_mapper(&self.state.scene.output, shot.exposure);
         let mapper = mapper.ok_or("expected tone settings in their ranges")?;
@@ -520,15 +632,20 @@ impl Viewer {
     /// The picture that is saved.
     #[cfg(not(target_arch = "wasm32"))]
     fn saved_shot(&mut self) -> Result<Shot, String> {
-        let (_, drawn) = self
-            .drawn
-            .ok_or("expected a picture to save, got none yet")?;
-        let size = self.state.scene.camera.size.unwrap_or(drawn.size());
+        let size = self.saved_size()?;
         let frame = view::frame_of(&self.state, size, self.facts().sun_azimuth_deg)?;
         let metered = self.metered.take();
         let shot = self.shot(frame);
         self.metered = metered;
         shot.ok_or_else(|| "expected light to save, got none yet".to_owned())
+    }
+
+    /// Width and height of the picture that is saved, pixels.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn saved_size(&self) -> Result<[u32; 2], String> {
+        let drawn = self.drawn;
+        let (_, shot) = drawn.ok_or("expected a picture to save, got none yet")?;
+        Ok(self.state.scene.camera.size.unwrap_or(shot.size()))
     }
 
     fn step_back(&mut self) {
@@ -593,7 +710,13 @@ impl Viewer {
             light,
             scene: self.answered.as_ref()?,
             frame: shot.frame,
-            direction: self.direction,
+            target: self.direction.map(|direction| Target {
+                direction: direction.to_array(),
+                ground: self.terrain_point(direction).map(|point| GroundLight {
+                    distance_m: point.distance_m,
+                    rgb: point.rgb.to_array(),
+                }),
+            }),
             sides: compare.map(|compare| {
                 let (left, right) = (compare.left.as_deref(), compare.model.as_str());
                 Sides {
@@ -601,6 +724,12 @@ impl Viewer {
                     right,
                     size: compared_size(shot.size(), [left, Some(right)]),
                 }
+            }),
+            picture: self.state.is_drawn_by_library().then(|| {
+                let mut scene = self.state.scene.clone();
+                scene.camera.size = Some(shot.size().map(|side| side.div_ceil(2)));
+                scene.output = OutputSpec::default();
+                scene
             }),
         })
     }
@@ -691,13 +820,12 @@ impl Viewer {
             Err(sentence) => self.unframed = Some(sentence),
         }
         self.show_notes(ui, area);
-        if let Some(direction) = self.direction {
-            let beside = self.beside.as_ref().zip(self.wanted());
-            let spectrum = beside.as_ref().and_then(|(beside, w)| beside.spectrum(w));
-            let is_open = reading::show(ui, direction, spectrum, &self.facts());
-            if !is_open {
-                self.direction = None;
-            }
+        #[cfg(not(target_arch = "wasm32"))]
+        self.read_pixel();
+        if let Some(direction) = self.direction
+            && !reading::show(ui, &self.reading(direction))
+        {
+            self.direction = None;
         }
     }
 
@@ -739,10 +867,13 @@ impl Viewer {
 
     /// Shows the picture of a frame in a rectangle, and takes the input on it.
     fn show_frame(&mut self, ui: &mut Ui, rect: Rect, frame: Frame) {
-        let response = view::interact(ui, rect, &mut self.state, &frame, &mut self.dragged);
+        let orbit = self.orbit(&frame);
+        let navigation = (self.navigation, &orbit);
+        let (state, dragged) = (&mut self.state, &mut self.dragged);
+        let response = view::interact(ui, rect, state, &frame, navigation, dragged);
         if response.clicked()
             && let Some(at) = response.interact_pointer_pos()
-            && let Some(direction) = view::direction_at(rect, at, &frame)
+            && let Some(direction) = view::pixel_direction_at(rect, at, &frame)
         {
             self.direction = Some(direction);
         }
@@ -757,6 +888,7 @@ impl Viewer {
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             let at = Rect::from_min_size(rect.min, shown);
             ui.painter().image(texture, at, whole, Color32::WHITE);
+            self.show_library_picture(ui, at);
             self.show_comparison(ui, at);
         }
         if self.dragged == Some(view::Handle::Sun) {
@@ -806,6 +938,33 @@ impl Viewer {
             None => {
                 self.texture = Some(renderer.register_native_texture(device, shown, filter));
             }
+        }
+    }
+
+    /// Shows what the library draws over what the device draws.
+    fn show_library_picture(&mut self, ui: &Ui, at: Rect) {
+        let Some((_, shot)) = self.drawn else {
+            return;
+        };
+        let beside = self.beside.as_ref().zip(self.wanted());
+        let Some((beside, wanted)) = &beside else {
+            return;
+        };
+        let (Some(scene), Some(Ok(picture))) = (&wanted.picture, beside.picture(wanted)) else {
+            return;
+        };
+        let is_shown = |(of, with, _): &(Scene, Shot, _)| (of, with) == (scene, &shot);
+        if !self.library_picture.as_ref().is_some_and(is_shown) {
+            let size = picture.size.map(|side| side as usize);
+            let image = shown(picture.rgb, size, &self.state.scene.output, shot);
+            let options = egui::TextureOptions::LINEAR;
+            let load = |image| ui.ctx().load_texture("library", image, options);
+            let texture = image.map(load);
+            self.library_picture = texture.map(|texture| (scene.clone(), shot, texture));
+        }
+        if let Some((_, _, texture)) = &self.library_picture {
+            let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+            ui.painter().image(texture.id(), at, whole, Color32::WHITE);
         }
     }
 
@@ -862,6 +1021,17 @@ impl Viewer {
         let mut text = beside
             .check(&wanted)
             .map(|s| format!("error against the solver: {}", sentence(s)));
+        if let Some(beyond) = self.beyond_device() {
+            let line = match beside.picture(&wanted) {
+                _ if wanted.picture.is_none() => format!("not drawn: {beyond}"),
+                None => format!("drawing {beyond} …"),
+                Some(Ok(_)) => {
+                    format!("drawn by the library, as the graphics device does not draw {beyond}")
+                }
+                Some(Err(refusal)) => refusal.to_owned(),
+            };
+            text = Some(text.map_or(line.clone(), |text| format!("{text}\n{line}")));
+        }
         if let Some(sides) = wanted.sides {
             let line = match (beside.comparison(&wanted), beside.refusal(&wanted)) {
                 (Some(comparison), _) => {
@@ -875,6 +1045,12 @@ impl Viewer {
             text = Some(text.map_or(line.clone(), |text| format!("{text}\n{line}")));
         }
         text
+    }
+
+    /// What of the scene the device does not draw, as a list in words.
+    fn beyond_device(&self) -> Option<String> {
+        let beyond = self.state.beyond_device();
+        (!beyond.is_empty()).then(|| beyond.join(", "))
     }
 
     /// What is not in the picture: that light is being computed, or why there is none.
@@ -1045,6 +1221,19 @@ fn exposure(light: &Light, frame: &Frame, output: &OutputSpec) -> Option<Exposur
         facts.sun_lx + facts.sky_lx,
     );
     ExposureSettings::of(output).metered(&picture).ok()
+}
+
+/// Writes the picture of a scene as `airlight sky` does.
+#[cfg(not(target_arch = "wasm32"))]
+fn save_by_library(scene: &Scene, size: [u32; 2], file: &Path) -> Result<(), RenderError> {
+    let mut scene = scene.clone();
+    scene.camera.size = Some(size);
+    scene.output.file = Some(file.display().to_string());
+    let renderer = Renderer::new(&scene)?;
+    let suns = renderer.suns_near(&renderer.sun(None)?);
+    let prepared = renderer.prepare(suns, Control::default())?;
+    let frame = renderer.frame(prepared.as_ref(), None)?;
+    frame.write(file, Control::default()).map(drop)
 }
 
 /// Exposed light as luminances, cd/m^2.

@@ -1,9 +1,8 @@
 //! [`Beside`]: what is computed beside the picture, to judge it: a spectrum, the error of the picture, the pictures of models.
 
-use crate::compute::{Answer, Colours, Light, Output, Request, Spectrum, Task};
+use crate::compute::{Answer, Colours, Light, Output, Request, Spectrum, Target, Task};
 use crate::platform::Worker;
 use crate::truth::{self, Difference, Statistics};
-use airlight::glam::DVec3;
 use airlight::models::registry;
 use airlight::monte_carlo::BUNDLE;
 use airlight::scene::Scene;
@@ -27,10 +26,12 @@ pub struct Wanted<'a> {
     pub scene: &'a Scene,
     /// Projection and size of the picture.
     pub frame: Frame,
-    /// Direction of the spectrum.
-    pub direction: Option<DVec3>,
+    /// Point of the spectrum.
+    pub target: Option<Target>,
     /// Models to compare.
     pub sides: Option<Sides<'a>>,
+    /// The scene that the library draws, with the size of the picture in its camera.
+    pub picture: Option<Scene>,
 }
 
 /// The two sides of a comparison.
@@ -73,6 +74,15 @@ pub struct Comparison {
     pub noise: Option<f64>,
 }
 
+/// A picture that the library has drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct LibraryPicture<'a> {
+    /// Width and height.
+    pub size: [u32; 2],
+    /// Red, green and blue by pixel, cd/m^2.
+    pub rgb: &'a [[f32; 3]],
+}
+
 /// Computes what is wanted, one after another.
 #[derive(Debug)]
 pub struct Beside {
@@ -84,6 +94,8 @@ pub struct Beside {
     /// The last pictures of models, the newest last.
     drawings: Vec<(Drawing, Colours)>,
     comparison: Option<Comparison>,
+    /// The picture that the library has drawn: red, green and blue by pixel, cd/m^2.
+    picture: Option<(Question, Vec<[f32; 3]>)>,
     /// A question without an answer, and why.
     refused: Option<(Question, String)>,
 }
@@ -91,9 +103,10 @@ pub struct Beside {
 /// A question about the light with a number.
 #[derive(Clone, Debug, PartialEq)]
 enum Question {
-    Spectrum(u64, DVec3),
+    Spectrum(u64, Target),
     Check(u64, Frame),
     Draw(Drawing),
+    Picture(Box<Scene>),
 }
 
 /// A picture by a model for the light with a number.
@@ -145,6 +158,7 @@ impl Beside {
             check: None,
             drawings: Vec::new(),
             comparison: None,
+            picture: None,
             refused: None,
         }
     }
@@ -160,9 +174,13 @@ impl Beside {
             && let Some(question) = next
         {
             self.number += 1;
+            let scene = match &question {
+                Question::Picture(scene) => (**scene).clone(),
+                _ => wanted.scene.clone(),
+            };
             let request = Request {
                 number: self.number,
-                scene: wanted.scene.clone(),
+                scene,
                 task: task(&question),
             };
             if self.worker.send(request) {
@@ -192,9 +210,9 @@ impl Beside {
         }
     }
 
-    /// The spectrum in the wanted direction.
+    /// The spectrum of the wanted point.
     pub fn spectrum(&self, wanted: &Wanted<'_>) -> Option<&Spectrum> {
-        let question = Question::Spectrum(wanted.number, wanted.direction?);
+        let question = Question::Spectrum(wanted.number, wanted.target?);
         let (of, spectrum) = self.spectrum.as_ref()?;
         (*of == question).then_some(spectrum)
     }
@@ -203,6 +221,21 @@ impl Beside {
     pub fn check(&self, wanted: &Wanted<'_>) -> Option<&Statistics> {
         let (of, statistics) = self.check.as_ref()?;
         (*of == Question::Check(wanted.number, wanted.frame)).then_some(statistics)
+    }
+
+    /// The wanted picture of the library, or why there is none, as a sentence.
+    pub fn picture(&self, wanted: &Wanted<'_>) -> Option<Result<LibraryPicture<'_>, &str>> {
+        let scene = wanted.picture.as_ref()?;
+        let is_of = |question: &Question| match question {
+            Question::Picture(of) => **of == *scene,
+            _ => false,
+        };
+        if let Some((_, sentence)) = self.refused.as_ref().filter(|(of, _)| is_of(of)) {
+            return Some(Err(sentence));
+        }
+        let (_, rgb) = self.picture.as_ref().filter(|(of, _)| is_of(of))?;
+        let size = scene.camera.size?;
+        Some(Ok(LibraryPicture { size, rgb }))
     }
 
     /// The wanted comparison.
@@ -241,9 +274,13 @@ impl Beside {
     /// The next question: what is shown first, the check last.
     fn next(&self, wanted: &Wanted<'_>) -> Option<Question> {
         let spectrum = wanted
-            .direction
-            .map(|d| Question::Spectrum(wanted.number, d));
+            .target
+            .map(|target| Question::Spectrum(wanted.number, target));
+        let picture = wanted.picture.clone();
+        let picture = picture.map(|scene| Question::Picture(Box::new(scene)));
+        // What the library draws is not what the device draws.
         let check = Question::Check(wanted.number, wanted.frame);
+        let check = picture.is_none().then_some(check);
         let sides = wanted.sides.as_ref();
         let drawings = sides.into_iter().flat_map(|sides| {
             let models = sides.models();
@@ -256,13 +293,15 @@ impl Beside {
                 }
                 Question::Check(..) => self.check.as_ref().is_some_and(|(of, _)| of == question),
                 Question::Draw(drawing) => self.drawing(drawing).is_some(),
+                Question::Picture(_) => self.picture.as_ref().is_some_and(|(of, _)| of == question),
             };
             !is_answered && self.refused.as_ref().map(|(of, _)| of) != Some(question)
         };
         spectrum
             .into_iter()
+            .chain(picture)
             .chain(drawings)
-            .chain([check])
+            .chain(check)
             .find(is_open)
     }
 
@@ -288,6 +327,7 @@ impl Beside {
         let number = match &question {
             Question::Spectrum(number, _) | Question::Check(number, _) => *number,
             Question::Draw(drawing) => drawing.number,
+            Question::Picture(_) => wanted.number,
         };
         if number != wanted.number {
             return;
@@ -311,6 +351,9 @@ impl Beside {
                 self.drawings.push((drawing, colours));
                 let more = self.drawings.len().saturating_sub(KEPT);
                 self.drawings.drain(..more);
+            }
+            (Ok(Output::Colours(colours)), question @ Question::Picture(_)) => {
+                self.picture = Some((question, colours.rgb));
             }
             (Err(sentence), question) => self.refused = Some((question, sentence)),
             (Ok(_), _) => {}
@@ -367,7 +410,8 @@ impl Beside {
 
 fn task(question: &Question) -> Task {
     match question {
-        Question::Spectrum(_, direction) => Task::Spectrum(direction.to_array()),
+        Question::Picture(_) => Task::Picture,
+        Question::Spectrum(_, target) => Task::Spectrum(*target),
         Question::Check(_, frame) => Task::Colours {
             model: registry::DEFAULT.to_owned(),
             directions: truth::directions(frame, CHECKED),

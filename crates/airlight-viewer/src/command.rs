@@ -76,17 +76,17 @@ fn with_options(scene: &Scene, command: &str) -> Option<Line> {
     line.number("--ground-altitude-m", air.ground_altitude_m);
     if let Some(mut fog) = rest.fog.take() {
         line.number("--visibility-m", fog.visibility_m.take());
+        line.name("--fog-profile", fog.profile.take());
         line.number("--scale-height-m", fog.scale_height_m.take());
+        line.number("--base-height-m", fog.base_height_m.take());
         line.number("--top-m", fog.top_m.take());
+        line.name("--droplets", fog.droplets.take());
         if fog != FogSpec::default() {
             return None;
         }
     }
     let camera = std::mem::take(&mut rest.camera);
-    line.text(
-        "--projection",
-        camera.projection.map(|kind| kind.name().to_owned()),
-    );
+    line.name("--projection", camera.projection);
     line.text(
         "--size",
         camera
@@ -97,10 +97,7 @@ fn with_options(scene: &Scene, command: &str) -> Option<Line> {
     line.number("--camera-elevation", camera.elevation_deg);
     line.number("--camera-roll", camera.roll_deg);
     line.number("--fov", camera.fov_deg);
-    line.text(
-        "--orientation",
-        camera.orientation.map(|program| program.name().to_owned()),
-    );
+    line.name("--orientation", camera.orientation);
     let output = &mut rest.output;
     match output.exposure.take() {
         Some(Exposure::Ev100(ev100)) => line.number("--exposure", Some(ev100)),
@@ -109,10 +106,7 @@ fn with_options(scene: &Scene, command: &str) -> Option<Line> {
         None => {}
     }
     line.number("--brighten", output.brighten.take());
-    line.text(
-        "--tone",
-        output.tone.take().map(|tone| tone.name().to_owned()),
-    );
+    line.name("--tone", output.tone.take());
     line.number("--tone-contrast", output.tone_contrast.take());
     line.number("--saturation", output.saturation.take());
     line.number("--white-balance", output.white_balance_k.take());
@@ -143,6 +137,10 @@ impl Line {
         self.text(option, value.map(|value| value.to_string()));
     }
 
+    fn name<T: Named>(&mut self, option: &str, value: Option<T>) {
+        self.text(option, value.map(|value| value.name().to_owned()));
+    }
+
     fn text(&mut self, option: &str, value: Option<String>) {
         if let Some(value) = value {
             self.add(option, value);
@@ -169,12 +167,13 @@ mod tests {
     fn scenes_are_commands() {
         let scene = "sun.elevation_deg = -4
             observer.altitude_m = 1500
+            fog = { visibility_m = 300, profile = \"clamped\", base_height_m = 40, droplets = \"mist\" }
             air.aerosol = \"urban:0.7,desert:0.3\"
             camera.projection = \"perspective\"
             output.exposure = 9.5";
         assert_eq!(
             command(scene),
-            "airlight sky --sun-elevation=-4 --altitude-m=1500 --aerosol=urban:0.7,desert:0.3 --projection=perspective --exposure=9.5 -o sky.png"
+            "airlight sky --sun-elevation=-4 --altitude-m=1500 --aerosol=urban:0.7,desert:0.3 --visibility-m=300 --fog-profile=clamped --base-height-m=40 --droplets=moderate-radiation-fog --projection=perspective --exposure=9.5 -o sky.png"
         );
         assert_eq!(
             command(

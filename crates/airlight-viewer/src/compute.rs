@@ -3,20 +3,30 @@
 //! A thread or a worker of a page holds a [`Computer`], which answers as [`compute`] does and keeps solved skies for the next request.
 
 use airlight::Control;
-use airlight::atmosphere::{Atmosphere, ConstituentKind, gases};
+use airlight::atmosphere::visibility::{self, Contrast};
+use airlight::atmosphere::{Atmosphere, ConstituentKind, DensityProfile, gases};
 use airlight::fog::RgbLayer;
 use airlight::glam::DVec3;
 use airlight::models::registry;
+use airlight::optics::PhaseError;
 use airlight::scene::{
-    AirSpec, Channels, PreparedModel, RadianceSampler, RadianceView, ResolvedScene, Scene,
-    SceneError, SolverSpec, SunAngles,
+    AirSpec, Channels, OutputSpec, PreparedModel, RadianceSampler, RadianceView, ResolvedScene,
+    Scene, SceneError, SolverSpec, SunAngles,
 };
 use airlight::sky::SunCoverage;
-use airlight::spectrum::RgbSpace;
+use airlight::spectrum::{RgbSpace, WavelengthGrid};
+use airlight::transfer::RgbPathOptics;
 use airlight_gpu::{Fog, FrameTables, SkyRendererError, SkySolver};
 use airlight_image::{ImageError, Size};
+use airlight_render::RenderError;
+#[cfg(not(target_arch = "wasm32"))]
+use airlight_render::Renderer;
 use airlight_render::canvas::{Canvas, Pass};
 use airlight_render::channels::PixelChannels;
+#[cfg(target_arch = "wasm32")]
+use airlight_render::layout::Layout;
+#[cfg(not(target_arch = "wasm32"))]
+use airlight_render::sky_rows::Layer;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -33,7 +43,7 @@ const NM: f64 = 550.0;
 pub struct Request {
     /// Number of the request, which the answer repeats.
     pub number: u64,
-    /// The scene; its camera and output do not matter.
+    /// The scene; its camera matters for a [`Task::Picture`] alone, its output does not.
     pub scene: Scene,
     /// What is asked of it.
     pub task: Task,
@@ -44,8 +54,8 @@ pub struct Request {
 pub enum Task {
     /// What frames are drawn with.
     Light,
-    /// The spectrum of the solver in a direction, a unit vector.
-    Spectrum([f64; 3]),
+    /// The spectrum of the solver at a point of the picture.
+    Spectrum(Target),
     /// Colours of a solver or a published model.
     Colours {
         /// Name of the model.
@@ -55,6 +65,9 @@ pub enum Task {
         /// Bundles of paths for each direction by a model with noise, together with those of requests before for the same directions.
         bundles: u64,
     },
+    /// The picture of the scene's camera, as the library draws it: with all that the graphics device does not draw. A page leaves out
+    /// objects and the lights of the night.
+    Picture,
 }
 
 /// The answer to a [`Request`].
@@ -73,8 +86,26 @@ pub enum Output {
     Light(Box<Light>),
     /// To [`Task::Spectrum`].
     Spectrum(Spectrum),
-    /// To [`Task::Colours`].
+    /// To [`Task::Colours`], and to [`Task::Picture`] by pixel, row by row.
     Colours(Colours),
+}
+
+/// A point of the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Target {
+    /// Its direction, a unit vector.
+    pub direction: [f64; 3],
+    /// The terrain that is seen there.
+    pub ground: Option<GroundLight>,
+}
+
+/// A point of terrain.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GroundLight {
+    /// Distance from the eye, m.
+    pub distance_m: f64,
+    /// Red, green and blue before the air in front of it, cd/m^2.
+    pub rgb: [f32; 3],
 }
 
 /// Light from a direction, without the sun's disc.
@@ -82,9 +113,11 @@ pub enum Output {
 pub struct Spectrum {
     /// Wavelengths, nm.
     pub wavelengths_nm: Vec<f64>,
-    /// Radiance, W m^-2 sr^-1 nm^-1.
+    /// Radiance, W m^-2 sr^-1 nm^-1: in front of ground that of the air and fog before it.
     pub radiance: Vec<f32>,
-    /// CIE XYZ, cd/m^2.
+    /// Transmittance of the air and fog before the ground; `None` for the sky.
+    pub transmittance: Option<Vec<f32>>,
+    /// CIE XYZ, cd/m^2, of the ground behind its air where there is ground.
     pub xyz: [f64; 3],
 }
 
@@ -133,6 +166,16 @@ pub struct Facts {
     pub sky_lx: f64,
     /// Whether lights shine in the fog: in one layer that thins exponentially with height.
     pub holds_lights: bool,
+    /// Distance at which the contrast of a black object at the eye's height falls to the scene's threshold, m: in air and fog of that
+    /// height, at 550 nm. Infinite in space.
+    pub visibility_m: f64,
+}
+
+impl Light {
+    /// Altitude of the ground of the planet above sea level, m.
+    pub fn ground_altitude_m(&self) -> f64 {
+        self.facts.altitude_m - f64::from(self.tables.sky.view.height_m)
+    }
 }
 
 /// Computes the answer to a request.
@@ -197,6 +240,10 @@ enum Refusal {
     Renderer(#[from] SkyRendererError),
     #[error(transparent)]
     Image(#[from] ImageError),
+    #[error(transparent)]
+    Phase(#[from] PhaseError),
+    #[error(transparent)]
+    Render(#[from] RenderError),
 }
 
 impl Computer {
@@ -207,7 +254,7 @@ impl Computer {
             Task::Light => self
                 .light(scene)
                 .map(|light| Output::Light(Box::new(light))),
-            Task::Spectrum(direction) => self.spectrum(scene, *direction).map(Output::Spectrum),
+            Task::Spectrum(target) => self.spectrum(scene, target).map(Output::Spectrum),
             Task::Colours {
                 model,
                 directions,
@@ -216,6 +263,7 @@ impl Computer {
                 let colours = self.colours(scene, model, directions, *bundles);
                 colours.map(Output::Colours)
             }
+            Task::Picture => self.picture(scene).map(Output::Colours),
         };
         Answer {
             number: request.number,
@@ -223,15 +271,41 @@ impl Computer {
         }
     }
 
-    fn spectrum(&mut self, scene: &Scene, direction: [f64; 3]) -> Result<Spectrum, Refusal> {
+    fn spectrum(&mut self, scene: &Scene, target: &Target) -> Result<Spectrum, Refusal> {
+        let direction = DVec3::from_array(target.direction);
         let (view, _) = self.view(scene, registry::DEFAULT, Channels::Spectral)?;
-        let mut radiance = vec![0.0; view.channel_count()];
-        view.radiance(&[DVec3::from_array(direction)], &mut radiance);
         let grid = view.grid().expect("a spectral view");
+        let mut radiance = vec![0.0; view.channel_count()];
+        let wavelengths_nm = grid.wavelengths_nm().to_vec();
+        let Some(ground) = target.ground else {
+            view.radiance(&[direction], &mut radiance);
+            return Ok(Spectrum {
+                wavelengths_nm,
+                xyz: grid.to_xyz(&radiance),
+                radiance,
+                transmittance: None,
+            });
+        };
+        let mut transmittance = vec![0.0; view.channel_count()];
+        view.path(
+            direction,
+            ground.distance_m,
+            &mut transmittance,
+            &mut radiance,
+        );
+        let (view, _) = self.view(scene, registry::DEFAULT, Channels::Rgb(SPACE))?;
+        let mut air = RgbPathOptics::CLEAR;
+        view.path(
+            direction,
+            ground.distance_m,
+            &mut air.transmittance,
+            &mut air.path_radiance,
+        );
         Ok(Spectrum {
-            wavelengths_nm: grid.wavelengths_nm().to_vec(),
-            xyz: grid.to_xyz(&radiance),
+            wavelengths_nm,
             radiance,
+            transmittance: Some(transmittance),
+            xyz: SPACE.to_xyz(air.apply(ground.rgb).map(f64::from)),
         })
     }
 
@@ -299,20 +373,76 @@ impl Computer {
         let resolved = scene.resolve()?;
         let sun = resolved.sun.at_start()?;
         let altitude_m = resolved.observer_altitude_m;
-        let of = (scene, model.to_owned());
+        let prepared = self.prepared((scene, model.to_owned()), || {
+            let suns = SunCoverage::near(sun.elevation_deg, altitude_m);
+            Ok(registry::prepare(&resolved, suns, Control::default())?)
+        })?;
+        let view = prepared.view(altitude_m, &sun.state(), channels)?;
+        Ok((view, ignored))
+    }
+
+    /// A model that is prepared for a scene, from before or as it is made.
+    fn prepared(
+        &mut self,
+        of: Prepared,
+        make: impl FnOnce() -> Result<Arc<dyn PreparedModel>, Refusal>,
+    ) -> Result<Arc<dyn PreparedModel>, Refusal> {
         let known = self.prepared.iter().position(|(known, _)| *known == of);
         let prepared = match known {
             Some(place) => self.prepared.remove(place).1,
-            None => {
-                let suns = SunCoverage::near(sun.elevation_deg, altitude_m);
-                registry::prepare(&resolved, suns, Control::default())?
-            }
+            None => make()?,
         };
-        let view = prepared.view(altitude_m, &sun.state(), channels)?;
-        self.prepared.push((of, prepared));
+        self.prepared.push((of, prepared.clone()));
         let more = self.prepared.len().saturating_sub(PREPARED);
         self.prepared.drain(..more);
-        Ok((view, ignored))
+        Ok(prepared)
+    }
+
+    /// The picture of a scene, with sun, objects and the lights of the night.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn picture(&mut self, scene: &Scene) -> Result<Colours, Refusal> {
+        let renderer = Renderer::new(&Scene {
+            output: OutputSpec::default(),
+            ..scene.clone()
+        })?;
+        let suns = renderer.suns_near(&renderer.sun(None)?);
+        let name = renderer.model().name().to_owned();
+        let lit = Scene {
+            sun: scene.sun.clone(),
+            observer: scene.observer.clone(),
+            night: scene.night.clone(),
+            air: scene.air.clone(),
+            fog: scene.fog.clone(),
+            solver: SolverSpec {
+                name: Some(name.clone()),
+                ..scene.solver.clone()
+            },
+            ..Default::default()
+        };
+        let prepared = self.prepared((lit, name), || {
+            Ok(renderer.prepare(suns, Control::default())?)
+        })?;
+        let frame = renderer.frame(prepared.as_ref(), None)?;
+        Ok(Colours {
+            rgb: frame.pixels(&renderer.layout().only_frame()?, Layer::All),
+            ignored: Vec::new(),
+            noise: None,
+        })
+    }
+
+    /// The picture of a scene, with sky, air and fog.
+    #[cfg(target_arch = "wasm32")]
+    fn picture(&mut self, scene: &Scene) -> Result<Colours, Refusal> {
+        let sun = scene.resolve()?.sun.at_start()?;
+        let layout = Layout::new(&scene.camera, &OutputSpec::default(), sun.azimuth_deg)?;
+        let frame = layout.only_frame()?;
+        let size = frame.size();
+        let pixels = (0..size.height()).flat_map(|j| (0..size.width()).map(move |i| (i, j)));
+        let directions: Vec<[f32; 3]> = pixels
+            .map(|(i, j)| frame.pixel_direction(i, j).unwrap_or_default())
+            .map(|direction| direction.as_vec3().to_array())
+            .collect();
+        self.colours(scene, registry::DEFAULT, &directions, 0)
     }
 
     fn light(&mut self, scene: &Scene) -> Result<Light, Refusal> {
@@ -322,7 +452,8 @@ impl Computer {
         let fog = fog(&resolved)?;
         let solver = self.solver(scene, &resolved, &sun)?;
         let tables = solver.tables(altitude_m, sun.state(), fog.as_ref())?;
-        let facts = facts(&resolved, &sun, &tables);
+        let contrast = scene.air.visibility_contrast();
+        let facts = facts(&resolved, &sun, &tables, contrast);
         Ok(Light { tables, facts })
     }
 
@@ -406,27 +537,34 @@ fn unit_vectors(directions: &[[f32; 3]]) -> Vec<DVec3> {
 }
 
 /// The first layer of a scene's fog.
-fn fog(scene: &ResolvedScene) -> Result<Option<Fog>, SceneError> {
+fn fog(scene: &ResolvedScene) -> Result<Option<Fog>, Refusal> {
     let Some(layer) = scene.fog.as_ref().and_then(|fog| fog.layers.first()) else {
         return Ok(None);
     };
     let planet = &scene.atmosphere.planet;
     let ground_height_m = planet.ground_altitude_m;
-    let part = layer.constituent(&[NM])?;
-    let density = part.density.raised(ground_height_m);
-    Ok(density.map(|density| Fog {
-        layer: RgbLayer {
-            density,
-            extinction_per_m: [layer.extinction_per_m as f32; 3],
-            single_scattering_albedo: [1.0; 3],
-            phase: part.phase,
-        },
+    let grid = WavelengthGrid::standard();
+    let part = layer.constituent(grid.wavelengths_nm())?;
+    let Some(mut part) = part.raised(ground_height_m) else {
+        return Ok(None);
+    };
+    // The device's layers have two edges; below the ground nothing is seen.
+    if let DensityProfile::Layer { bottom_m, .. } = &mut part.density {
+        *bottom_m = bottom_m.max(ground_height_m);
+    }
+    Ok(Some(Fog {
+        layer: RgbLayer::from_constituent(&part, SPACE)?,
         ground_height_m,
         ground_albedo: [planet.ground_albedo.at(NM) as f32; 3],
     }))
 }
 
-fn facts(scene: &ResolvedScene, sun: &SunAngles, tables: &FrameTables) -> Facts {
+fn facts(
+    scene: &ResolvedScene,
+    sun: &SunAngles,
+    tables: &FrameTables,
+    contrast: Contrast,
+) -> Facts {
     let air = &scene.atmosphere;
     let top_m = air.planet.top_altitude_m;
     let ground_m = air.planet.ground_altitude_m;
@@ -453,5 +591,22 @@ fn facts(scene: &ResolvedScene, sun: &SunAngles, tables: &FrameTables) -> Facts 
             .fog
             .as_ref()
             .is_some_and(|fog| fog.around_lights.is_some()),
+        visibility_m: visibility::visibility_m(extinction_at_eye_per_m(scene), contrast),
     }
+}
+
+/// Extinction of air and fog at the height of the eye at 550 nm, 1/m.
+fn extinction_at_eye_per_m(scene: &ResolvedScene) -> f64 {
+    let altitude_m = scene.observer_altitude_m;
+    let height_m = altitude_m - scene.atmosphere.planet.ground_altitude_m;
+    let layers = scene.fog.iter().flat_map(|fog| &fog.layers);
+    let fog: f64 = layers
+        .map(|layer| layer.extinction_per_m * layer.profile.at(height_m))
+        .sum();
+    let is_in_air = altitude_m < scene.atmosphere.planet.top_altitude_m;
+    let air = match is_in_air {
+        true => scene.atmosphere.extinction_per_m(altitude_m, NM),
+        false => 0.0,
+    };
+    air + fog
 }

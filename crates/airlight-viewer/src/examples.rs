@@ -3,7 +3,7 @@
 use crate::state::State;
 
 /// Names of the scenes, and their TOML, with their terrain.
-pub const EXAMPLES: [(&str, &str); 9] = [
+pub const EXAMPLES: &[(&str, &str)] = &[
     (
         "noon in the mountains",
         "sun = { elevation_deg = 55, azimuth_deg = 180 }
@@ -29,6 +29,19 @@ pub const EXAMPLES: [(&str, &str); 9] = [
         terrain = { east_m = 2000, south_m = 3000 }",
     ),
     ("a street of lights in fog", STREET),
+    (
+        "two layers of fog",
+        "sun = { elevation_deg = 12, azimuth_deg = 285 }
+        observer.altitude_m = 90
+        air.atmosphere = \"clear\"
+        fog = { visibility_m = 150, scale_height_m = 12, layers = [{ visibility_m = 900, top_m = 60, droplets = \"mist\" }] }
+        camera = { azimuth_deg = 265, elevation_deg = -2 }",
+    ),
+    #[cfg(not(target_arch = "wasm32"))]
+    (
+        "Klassen's simple scene in fog",
+        include_str!("../data/simple_scene.toml"),
+    ),
     (
         "dusk",
         "sun = { elevation_deg = -4, azimuth_deg = 285 }
@@ -99,13 +112,34 @@ pub fn state(toml: &str) -> Option<State> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use airlight::scene::{ObjectsSpec, Scene};
+    use airlight_render::scene_file;
+    use std::path::Path;
 
     #[test]
     fn examples_are_scenes() {
-        for (name, toml) in EXAMPLES {
+        for &(name, toml) in EXAMPLES {
             let state = state(toml).unwrap_or_else(|| panic!("{name}"));
             let resolved = state.scene.resolve();
             resolved.unwrap_or_else(|error| panic!("{name}: {error}"));
         }
+    }
+
+    #[test]
+    fn the_simple_scene_is_that_of_the_figures() {
+        let (_, toml) = EXAMPLES
+            .iter()
+            .find(|(name, _)| name.starts_with("Klassen"))
+            .unwrap();
+        let mut right = Scene {
+            objects: Some(ObjectsSpec {
+                file: Some("simple-scene.toml".to_owned()),
+                ..Default::default()
+            }),
+            ..Default::default()
+        };
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/klassen1987");
+        scene_file::inline_files(&mut right, &folder).unwrap();
+        assert_eq!(state(toml).unwrap().scene.objects, right.objects);
     }
 }

@@ -1,6 +1,8 @@
 //! Requests and answers as bytes, for a worker of a page. Numbers are in the byte order of the machine, which both ends share.
 
-use crate::compute::{Answer, Colours, Facts, Light, Output, Request, Spectrum, Task};
+use crate::compute::{
+    Answer, Colours, Facts, GroundLight, Light, Output, Request, Spectrum, Target, Task,
+};
 use airlight::scene::Scene;
 use airlight_gpu::{FogFrame, FrameTables, Lighting};
 use airlight_shaders::twins::colour::RgbWeights;
@@ -100,12 +102,14 @@ macro_rules! structs {
 
 structs! {
     Answer { number, result }
-    Spectrum { wavelengths_nm, radiance, xyz }
+    Spectrum { wavelengths_nm, radiance, transmittance, xyz }
+    Target { direction, ground }
+    GroundLight { distance_m, rgb }
     Colours { rgb, ignored, noise }
     Light { tables, facts }
     Facts {
         sun_elevation_deg, sun_azimuth_deg, altitude_m, horizon_deg, haze_depth_550, ozone_du, ground_albedo, is_earth, sun_lx, sky_lx,
-        holds_lights
+        holds_lights, visibility_m
     }
     FrameTables { sky, disc, disc_one_minus_cos, fog, lighting }
     SkyTables {
@@ -128,9 +132,9 @@ impl Bytes for Task {
     fn put(&self, bytes: &mut Vec<u8>) {
         match self {
             Self::Light => 0u8.put(bytes),
-            Self::Spectrum(direction) => {
+            Self::Spectrum(target) => {
                 1u8.put(bytes);
-                direction.put(bytes);
+                target.put(bytes);
             }
             Self::Colours {
                 model,
@@ -142,6 +146,7 @@ impl Bytes for Task {
                 directions.put(bytes);
                 bundles.put(bytes);
             }
+            Self::Picture => 3u8.put(bytes),
         }
     }
     fn take(bytes: &mut &[u8]) -> Option<Self> {
@@ -153,6 +158,7 @@ impl Bytes for Task {
                 directions: Bytes::take(bytes)?,
                 bundles: Bytes::take(bytes)?,
             }),
+            3 => Some(Self::Picture),
             _ => None,
         }
     }
@@ -315,11 +321,13 @@ impl<T: Bytes, E: Bytes> Bytes for Result<T, E> {
 mod tests {
     use super::*;
     use crate::State;
-    use airlight::scene::FogSpec;
+    use airlight::scene::{FogSpec, Projection};
 
     #[test]
     fn requests_and_answers_return_from_bytes() {
         let mut scene = State::default().lit_scene();
+        scene.camera.projection = Some(Projection::Perspective);
+        scene.camera.size = Some([6, 4]);
         scene.fog = Some(FogSpec {
             visibility_m: Some(2000.0),
             ..Default::default()
@@ -329,11 +337,22 @@ mod tests {
             directions: vec![[0.0, 1.0, 0.0], [0.0; 3]],
             bundles: 2,
         };
+        let spectrum = |ground| {
+            Task::Spectrum(Target {
+                direction: [0.0, 0.6, -0.8],
+                ground,
+            })
+        };
         let tasks = [
             Task::Light,
-            Task::Spectrum([0.0, 1.0, 0.0]),
+            spectrum(None),
+            spectrum(Some(GroundLight {
+                distance_m: 900.0,
+                rgb: [20.0, 30.0, 10.0],
+            })),
             colours("preetham"),
             colours("monte-carlo"),
+            Task::Picture,
         ];
         for (number, task) in (7..).zip(tasks) {
             let request = Request {

@@ -4,36 +4,42 @@ use crate::compute::Facts;
 use crate::play::{Play, SPEEDS};
 use crate::state::{ALTITUDES_M, Compare, CompareMode, State, Terrain};
 use crate::terrain::SPACING_M;
-use crate::view::{FISHEYE_FOV_DEG, FOV_DEG, SUN_AZIMUTH_DEG};
+use crate::view::{FISHEYE_FOV_DEG, FOV_DEG, Navigation, SUN_AZIMUTH_DEG};
 use crate::widgets::{Number, choice, title};
 use airlight::Named;
 use airlight::atmosphere::{AerosolType, Preset};
 use airlight::axes;
+use airlight::fog::droplets::DropletKind;
 use airlight::models::registry;
 use airlight::scene::{
-    CameraExposure, CameraSpec, Exposure, FogSpec, LightKind, LightSpec, MeteringMode, Projection,
-    Scene, ToneKind,
+    CameraExposure, CameraSpec, Exposure, FogLayerSpec, FogProfile, FogSpec, LightKind, LightSpec,
+    MeteringMode, Projection, Scene, ToneKind,
 };
 use airlight::sun::Moment;
 use airlight_gpu::MOST_LIGHTS;
 use airlight_render::overlay::{DepthFileKind, OverlaySpec};
 use eframe::egui::{self, RichText, Ui};
 
+/// What is set besides the state.
+#[derive(Debug)]
+pub struct Shown<'a> {
+    /// Whether time passes.
+    pub play: &'a mut Play,
+    /// What dragging does.
+    pub navigation: &'a mut Navigation,
+    /// Pixels of the display along a pixel of the picture.
+    pub coarseness: &'a mut u32,
+}
+
 /// Shows the controls; they change the state.
-pub fn show(
-    ui: &mut Ui,
-    state: &mut State,
-    (play, coarseness): (&mut Play, &mut u32),
-    facts: &Facts,
-    ev100: f64,
-) {
+pub fn show(ui: &mut Ui, state: &mut State, shown: Shown<'_>, facts: &Facts, ev100: f64) {
     if let Some(photograph) = &mut state.photograph {
         self::photograph(ui, photograph, &mut state.scene);
         fog(ui, state);
         return;
     }
-    sun(ui, state, play, facts);
-    eye(ui, state, facts);
+    sun(ui, state, shown.play, facts);
+    eye(ui, state, shown.navigation, facts);
     air(ui, state, facts);
     fog(ui, state);
     lights(ui, state, facts);
@@ -41,7 +47,7 @@ pub fn show(
     display(ui, state, ev100);
     let named = [(1, "full"), (2, "half"), (4, "a quarter")];
     let named = named.map(|(pixels, text)| (pixels, text.to_owned()));
-    choice(ui, "Resolution", coarseness, &named);
+    choice(ui, "Resolution", shown.coarseness, &named);
     compare(ui, state);
 }
 
@@ -176,7 +182,7 @@ fn day_of_year(midnight_s: f64) -> f64 {
     ((midnight_s - start_s) / DAY_S).round() + 1.0
 }
 
-fn eye(ui: &mut Ui, state: &mut State, facts: &Facts) {
+fn eye(ui: &mut Ui, state: &mut State, navigation: &mut Navigation, facts: &Facts) {
     if title(ui, "Eye") {
         let usual = State::default().scene;
         (state.scene.observer, state.scene.camera) = (usual.observer, usual.camera);
@@ -186,6 +192,12 @@ fn eye(ui: &mut Ui, state: &mut State, facts: &Facts) {
         .logarithmic()
         .help("Above sea level. Page Up and Page Down in the picture change it, too.")
         .show_optional(ui, &mut state.scene.observer.altitude_m, facts.altitude_m);
+    let named = [
+        (Navigation::Look, "looks around"),
+        (Navigation::Orbit, "orbits what is ahead"),
+    ];
+    let named = named.map(|(navigation, text)| (navigation, text.to_owned()));
+    choice(ui, "Dragging", navigation, &named);
     camera(ui, &mut state.scene.camera, facts);
 }
 
@@ -319,24 +331,138 @@ fn fog(ui: &mut Ui, state: &mut State) {
             ..Default::default()
         });
     }
+    let is_photograph = state.photograph.is_some();
     if let Some(fog) = &mut state.scene.fog {
-        let nearest_m = if state.photograph.is_some() {
-            1.0
-        } else {
-            20.0
+        fog_layers(ui, fog, is_photograph);
+    }
+}
+
+/// Visibility in a layer that is added, m.
+const LAYER_VISIBILITY_M: f64 = 500.0;
+
+fn fog_layers(ui: &mut Ui, fog: &mut FogSpec, is_photograph: bool) {
+    let id = egui::Id::unique("airlight fog layer");
+    let mut chosen: usize = ui.data(|data| data.get_temp(id).unwrap_or(0));
+    chosen = chosen.min(fog.layers.len());
+    ui.horizontal(|ui| {
+        if ui.button("Add a layer").clicked() {
+            fog.layers.push(FogLayerSpec {
+                visibility_m: Some(LAYER_VISIBILITY_M),
+                ..Default::default()
+            });
+            chosen = fog.layers.len();
+        }
+        let has_more = !fog.layers.is_empty();
+        let remove = ui.add_enabled(has_more, egui::Button::new("Remove the layer"));
+        if remove.clicked() {
+            match chosen {
+                0 => {
+                    let next = fog.layers.remove(0);
+                    set_layer(fog, 0, next);
+                }
+                more => {
+                    fog.layers.remove(more - 1);
+                }
+            }
+            chosen = chosen.min(fog.layers.len());
+        }
+    });
+    let count = 1 + fog.layers.len();
+    if count > 1 {
+        let named: Vec<_> = (0..count)
+            .map(|k| (k, format!("{} of {count}", k + 1)))
+            .collect();
+        choice(ui, "Layer", &mut chosen, &named);
+    }
+    ui.data_mut(|data| data.insert_temp(id, chosen));
+    let mut layer = match chosen {
+        0 => fog.first_layer(),
+        more => fog.layers[more - 1].clone(),
+    };
+    fog_layer(ui, &mut layer, is_photograph);
+    set_layer(fog, chosen, layer);
+}
+
+/// Replaces a layer: the first, or a further one.
+fn set_layer(fog: &mut FogSpec, place: usize, layer: FogLayerSpec) {
+    match place {
+        0 => {
+            *fog = FogSpec {
+                visibility_m: layer.visibility_m,
+                profile: layer.profile,
+                scale_height_m: layer.scale_height_m,
+                base_height_m: layer.base_height_m,
+                top_m: layer.top_m,
+                droplets: layer.droplets,
+                ..std::mem::take(fog)
+            }
+        }
+        more => fog.layers[more - 1] = layer,
+    }
+}
+
+/// Profiles that let the sky be seen; the others are for photographs.
+const SKY_PROFILES: [FogProfile; 4] = [
+    FogProfile::Height,
+    FogProfile::Clamped,
+    FogProfile::Unclamped,
+    FogProfile::Slab,
+];
+
+fn fog_layer(ui: &mut Ui, layer: &mut FogLayerSpec, is_photograph: bool) {
+    let nearest_m = if is_photograph { 1.0 } else { 20.0 };
+    Number::new("Visibility", " m", nearest_m..=2e4)
+        .logarithmic()
+        .decimals(0)
+        .help("Where the layer is densest.")
+        .show_optional(ui, &mut layer.visibility_m, LAYER_VISIBILITY_M);
+    layer.visibility_m.get_or_insert(LAYER_VISIBILITY_M);
+    let profiles = FogProfile::ALL.iter();
+    let named: Vec<_> = profiles
+        .filter(|profile| is_photograph || SKY_PROFILES.contains(profile))
+        .map(|profile| (*profile, profile.name().to_owned()))
+        .collect();
+    let heights_m = [layer.scale_height_m, layer.base_height_m, layer.top_m];
+    let is_plain = layer.profile.is_none() && heights_m.iter().all(Option::is_none);
+    let mut profile = match is_photograph && is_plain {
+        // As `airlight fog` has it.
+        true => FogProfile::Uniform,
+        false => layer.implied_profile(),
+    };
+    if choice(ui, "Profile", &mut profile, &named) {
+        // Heights of one profile mean nothing to another.
+        *layer = FogLayerSpec {
+            visibility_m: layer.visibility_m,
+            droplets: layer.droplets,
+            profile: Some(profile),
+            ..Default::default()
         };
-        Number::new("Visibility", " m", nearest_m..=2e4)
-            .logarithmic()
-            .decimals(0)
-            .help("At the ground, where the fog is densest.")
-            .show_optional(ui, &mut fog.visibility_m, 500.0);
-        fog.visibility_m.get_or_insert(500.0);
+    }
+    use FogProfile::{Clamped, Height, Slab, Unclamped};
+    if matches!(profile, Height | Clamped | Unclamped) {
         Number::new("Scale height", " m", 5.0..=1000.0)
             .logarithmic()
             .decimals(0)
             .help("Height over which the fog thins by a factor e.")
-            .show_optional(ui, &mut fog.scale_height_m, 50.0);
+            .show_optional(ui, &mut layer.scale_height_m, 50.0);
     }
+    if matches!(profile, Clamped | Unclamped) {
+        Number::new("Base", " m", 0.0..=1000.0)
+            .decimals(0)
+            .help("Height from which the fog thins.")
+            .show_optional(ui, &mut layer.base_height_m, 0.0);
+    }
+    if profile == Slab {
+        Number::new("Top", " m", 1.0..=1000.0)
+            .logarithmic()
+            .decimals(0)
+            .help("Height up to which the fog is even.")
+            .show_optional(ui, &mut layer.top_m, 50.0);
+    }
+    let kinds = DropletKind::ALL.iter();
+    let mut named = vec![(None, "radiation (default)".to_owned())];
+    named.extend(kinds.map(|kind| (Some(*kind), kind.name().to_owned())));
+    choice(ui, "Droplets", &mut layer.droplets, &named);
 }
 
 /// Light of the fog over a photograph.

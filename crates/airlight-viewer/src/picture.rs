@@ -235,20 +235,29 @@ impl Picture {
         let (Some(ground), Some(pass)) = (&shot.ground, &self.terrain) else {
             return;
         };
-        let Some(lighting) = self.sky.lighting() else {
+        let Some(view) = self.terrain_view(ground) else {
             return;
-        };
-        let [height_m, planet_radius_m] = self.eye_m;
-        let [east_m, south_m] = ground.place_m;
-        let view = TerrainView {
-            eye_m: DVec3::new(east_m, height_m, south_m),
-            planet_radius_m,
-            lighting: *lighting,
-            level_albedo: LEVEL_ALBEDO,
-            steep_albedo: STEEP_ALBEDO,
         };
         let (light, depth) = (&targets.light_view, &targets.depth);
         pass.record(encoder, light, depth, camera, &view);
+    }
+
+    /// Height of the eye above the ground of the planet, and the radius of the planet, m.
+    pub fn eye_m(&self) -> [f64; 2] {
+        self.eye_m
+    }
+
+    /// The ground as it is drawn; `None` before the first light.
+    pub fn terrain_view(&self, ground: &Ground) -> Option<TerrainView> {
+        let [height_m, planet_radius_m] = self.eye_m;
+        let [east_m, south_m] = ground.place_m;
+        Some(TerrainView {
+            eye_m: DVec3::new(east_m, height_m, south_m),
+            planet_radius_m,
+            lighting: *self.sky.lighting()?,
+            level_albedo: LEVEL_ALBEDO,
+            steep_albedo: STEEP_ALBEDO,
+        })
     }
 
     /// What is shown: signals of sRGB.

@@ -1,6 +1,9 @@
 //! [`State`]: what the user has set, and its history.
 
-use airlight::scene::{CameraSpec, Projection, Scene, SceneDocument, SceneError, SunSpec};
+use airlight::fog::FogScattering;
+use airlight::scene::{
+    CameraSpec, NightSpec, ObjectsSpec, Projection, Scene, SceneDocument, SceneError, SunSpec,
+};
 use airlight_render::overlay::{OverlayScene, OverlaySpec};
 #[cfg(not(target_arch = "wasm32"))]
 use airlight_render::{RenderError, scene_file};
@@ -215,6 +218,44 @@ impl State {
                 ..photograph
             },
         }
+    }
+
+    /// What of the scene the graphics device does not draw, as phrases.
+    pub fn beyond_device(&self) -> Vec<&'static str> {
+        let scene = &self.scene;
+        let fog = scene.fog.as_ref();
+        let orders = fog.and_then(|fog| fog.scattering);
+        [
+            (
+                fog.is_some_and(|fog| !fog.layers.is_empty()),
+                "further layers of fog",
+            ),
+            (
+                orders.is_some_and(|orders| orders != FogScattering::Multiple),
+                "fewer orders of scattering in the fog",
+            ),
+            (
+                fog.is_some_and(|fog| fog.patches.is_some()),
+                "patches in the fog",
+            ),
+            (
+                scene.objects.as_ref().is_some_and(ObjectsSpec::is_set),
+                "objects",
+            ),
+            (scene.night != NightSpec::default(), "lights of the night"),
+        ]
+        .into_iter()
+        .filter_map(|(is_set, phrase)| is_set.then_some(phrase))
+        .collect()
+    }
+
+    /// Whether the library draws the picture, once it is still, as there is something that the device does not draw, and nothing that the
+    /// library does not draw here.
+    pub fn is_drawn_by_library(&self) -> bool {
+        !self.beyond_device().is_empty()
+            && self.terrain.is_none()
+            && self.scene.lights.is_empty()
+            && self.photograph.is_none()
     }
 
     /// The part of the scene that light depends on, which is solved for again when it changes.

@@ -1,4 +1,4 @@
-//! The picture in the window: its projection, looking around, zooming, moving the sun.
+//! The picture in the window: its projection, looking around, moving the eye, zooming, moving the sun.
 
 use crate::state::{ALTITUDES_M, CompareMode, State};
 use airlight::axes;
@@ -6,8 +6,8 @@ use airlight::scene::{CameraSpec, OutputSpec};
 use airlight_image::{Frame, Projection};
 use airlight_render::layout::Layout;
 use eframe::egui::{
-    self, Color32, CursorIcon, EventFilter, Key, Pos2, Rect, Response, Role, Sense, Stroke, Ui,
-    WidgetInfo, pos2, vec2,
+    self, Color32, CursorIcon, EventFilter, Key, PointerButton, Pos2, Rect, Response, Role, Sense,
+    Stroke, Ui, WidgetInfo, pos2, vec2,
 };
 use glam::DVec3;
 
@@ -22,20 +22,49 @@ const KEY_STEP: f64 = 0.05;
 /// Factor by which a key zooms, and changes the altitude.
 const KEY_FACTOR: f64 = 1.15;
 
-/// Distance by which a key moves the eye over terrain, m, and the part of its altitude that is added.
+/// Distance by which a key moves the eye over the ground, m, and the part of its altitude that is added.
 const WALK_M: f64 = 20.0;
 const WALK_PART: f64 = 0.1;
 /// Distance from the sun's centre, and from the line of a comparison, within which they are dragged, points.
 const SUN_REACH: f32 = 14.0;
 const LINE_REACH: f32 = 5.0;
 
+/// Angle by which the eye orbits for each point of a drag, and for a key, degrees.
+const ORBIT_DEG_PER_POINT: f64 = 0.4;
+const ORBIT_KEY_DEG: f64 = 5.0;
+/// Steepest elevation of an orbit, degrees: beyond it the azimuth has no meaning.
+const STEEPEST_DEG: f64 = 89.0;
+
 /// What is dragged in the picture, instead of the picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Handle {
     /// The sun, unless it follows from a place and a time.
     Sun,
     /// The line of a comparison.
     Line,
+    /// The eye, around a point at a distance, m.
+    Eye(f64),
+}
+
+/// What dragging the picture, and the arrow keys in it, do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Navigation {
+    /// Turn the camera.
+    #[default]
+    Look,
+    /// Move the eye around the point in the centre of the picture.
+    Orbit,
+}
+
+/// The eye, and what it orbits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Orbit {
+    /// Distance of the point in the centre of the picture, m.
+    pub distance_m: f64,
+    /// Altitude of the eye, m.
+    pub altitude_m: f64,
+    /// Lowest altitude of the eye, m.
+    pub lowest_m: f64,
 }
 
 /// Name of the picture for screen readers.
@@ -118,12 +147,22 @@ impl Look {
     };
 }
 
+/// Direction of the centre of a picture.
+pub fn centre(frame: &Frame) -> DVec3 {
+    let look = Look::of(frame);
+    let elevation_deg = look
+        .angles_deg
+        .map_or(0.0, |[elevation_deg, _]| elevation_deg);
+    axes::direction(look.azimuth_deg, elevation_deg)
+}
+
 /// Takes the input on the picture in a rectangle; it changes the state, and what is dragged.
 pub fn interact(
     ui: &mut Ui,
     rect: Rect,
     state: &mut State,
     frame: &Frame,
+    (navigation, orbit): (Navigation, &Orbit),
     dragged: &mut Option<Handle>,
 ) -> Response {
     let response = ui.interact(
@@ -137,12 +176,19 @@ pub fn interact(
     if response.clicked() || response.drag_started() {
         response.request_focus();
     }
-    let command = ui.input(|i| i.modifiers.command);
+    let (command, shift) = ui.input(|i| (i.modifiers.command, i.modifiers.shift));
+    let orbits = navigation == Navigation::Orbit || shift;
     let handle = |at: Option<Pos2>| at.and_then(|at| handle_at(rect, at, state, frame));
     if response.drag_started() {
-        *dragged = match command {
+        let grasped = match command {
             true => Some(Handle::Sun),
             false => handle(ui.input(|i| i.pointer.press_origin())),
+        };
+        let by_second = response.drag_started_by(PointerButton::Secondary);
+        let eye = (orbits || by_second).then_some(Handle::Eye(orbit.distance_m));
+        *dragged = match by_second {
+            true => eye,
+            false => grasped.or(eye),
         };
     }
     let near = dragged.or_else(|| handle(response.hover_pos()));
@@ -150,6 +196,7 @@ pub fn interact(
         Some(Handle::Sun) if response.dragged() => ui.set_cursor_icon(CursorIcon::Grabbing),
         Some(Handle::Sun) => ui.set_cursor_icon(CursorIcon::Grab),
         Some(Handle::Line) => ui.set_cursor_icon(CursorIcon::ResizeHorizontal),
+        Some(Handle::Eye(_)) => ui.set_cursor_icon(CursorIcon::Move),
         None => {}
     }
     if response.dragged() {
@@ -163,6 +210,15 @@ pub fn interact(
             (Some(Handle::Line), Some(at), Some(compare)) => {
                 let place = f64::from((at.x - rect.left()) / rect.width());
                 compare.split = place.clamp(0.0, 1.0);
+            }
+            (Some(Handle::Eye(distance_m)), ..) => {
+                let by = response.drag_delta();
+                let by = [by.x, -by.y].map(|v| ORBIT_DEG_PER_POINT * f64::from(v));
+                let orbit = Orbit {
+                    distance_m,
+                    ..*orbit
+                };
+                self::orbit(state, look, &orbit, by);
             }
             _ => {
                 let by = response.drag_delta();
@@ -187,7 +243,7 @@ pub fn interact(
             ..Default::default()
         };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
-        keys(ui, state, look, command);
+        keys(ui, state, look, command, orbits.then_some(orbit));
     }
     response
 }
@@ -236,30 +292,48 @@ pub fn direction_at(rect: Rect, at: Pos2, frame: &Frame) -> Option<DVec3> {
     )
 }
 
-fn keys(ui: &Ui, state: &mut State, look: Look, moves_sun: bool) {
+/// Direction of the centre of the pixel at a point in the picture; `None` outside it.
+pub fn pixel_direction_at(rect: Rect, at: Pos2, frame: &Frame) -> Option<DVec3> {
+    let place = (at - rect.min) / rect.size();
+    let size = frame.size();
+    let pixel = |part: f32, count: u32| {
+        let k = (part * count as f32).floor();
+        (k >= 0.0 && k < count as f32).then_some(k as u32)
+    };
+    frame.pixel_direction(
+        pixel(place.x, size.width())?,
+        pixel(place.y, size.height())?,
+    )
+}
+
+fn keys(ui: &Ui, state: &mut State, look: Look, moves_sun: bool, orbit: Option<&Orbit>) {
     let step = KEY_STEP * look.across_deg;
     let pressed = |key| f64::from(ui.input(|i| i.num_presses(key)) as u32);
     let along = |plus, minus| pressed(plus) - pressed(minus);
     let across = along(Key::ArrowRight, Key::ArrowLeft);
     let up = along(Key::ArrowUp, Key::ArrowDown);
     if across != 0.0 || up != 0.0 {
-        match moves_sun {
-            true => move_sun(state, [across, up].map(|v| v * 0.5)),
-            false => turn(state, look, [across, up].map(|v| v * step)),
+        match (moves_sun, orbit) {
+            (true, _) => move_sun(state, [across, up].map(|v| v * 0.5)),
+            (false, Some(orbit)) => {
+                let by = [across, up].map(|v| -v * ORBIT_KEY_DEG);
+                self::orbit(state, look, orbit, by);
+            }
+            (false, None) => turn(state, look, [across, up].map(|v| v * step)),
         }
     }
     let zooms = along(Key::Minus, Key::Plus) - pressed(Key::Equals);
     if zooms != 0.0 {
         zoom(state, look, KEY_FACTOR.powf(zooms));
     }
-    if let Some(terrain) = &mut state.terrain {
-        let altitude_m = state.scene.observer.altitude_m.unwrap_or(0.0);
-        let step_m = WALK_M + WALK_PART * altitude_m;
-        let ahead = along(Key::W, Key::S) * step_m;
-        let aside = along(Key::D, Key::A) * step_m;
+    let altitude_m = state.scene.observer.altitude_m.unwrap_or(0.0);
+    let step_m = WALK_M + WALK_PART * altitude_m;
+    let ahead = along(Key::W, Key::S) * step_m;
+    let aside = along(Key::D, Key::A) * step_m;
+    if ahead != 0.0 || aside != 0.0 {
         let [sin, cos] = [f64::sin, f64::cos].map(|f| f(look.azimuth_deg.to_radians()));
-        terrain.east_m += ahead * sin + aside * cos;
-        terrain.south_m += aside * sin - ahead * cos;
+        let [east_m, north_m] = [ahead * sin + aside * cos, ahead * cos - aside * sin];
+        move_eye(state, [east_m, -north_m]);
     }
     let climbs = along(Key::PageUp, Key::PageDown);
     if climbs != 0.0 {
@@ -280,6 +354,48 @@ fn turn(state: &mut State, look: Look, [right, up]: [f64; 2]) {
     if let Some(elevation_deg) = elevation_deg {
         camera.elevation_deg = Some((elevation_deg + up).clamp(-90.0, 90.0));
     }
+}
+
+/// Moves the eye over the ground, m to the east and to the south: over terrain, or else away from the lights, whose places count from
+/// the ground below the eye.
+fn move_eye(state: &mut State, [east_m, south_m]: [f64; 2]) {
+    if let Some(terrain) = &mut state.terrain {
+        terrain.east_m += east_m;
+        terrain.south_m += south_m;
+        return;
+    }
+    for position_m in state
+        .scene
+        .lights
+        .iter_mut()
+        .flat_map(|l| &mut l.position_m)
+    {
+        position_m[0] -= east_m;
+        position_m[2] -= south_m;
+    }
+}
+
+/// Moves the eye around the point in the centre of the picture: turns the camera, degrees to the right and up, and keeps the point where
+/// it is. A whole sphere has no centre and is turned.
+fn orbit(state: &mut State, look: Look, orbit: &Orbit, [right, up]: [f64; 2]) {
+    let Some([elevation_deg, _]) = look.angles_deg else {
+        return turn(state, look, [right, up]);
+    };
+    let before = axes::direction(look.azimuth_deg, elevation_deg);
+    let elevation_at = |altitude_m: f64| {
+        let sine = before.y + (orbit.altitude_m - altitude_m) / orbit.distance_m;
+        let elevation_deg = sine.clamp(-1.0, 1.0).asin().to_degrees();
+        elevation_deg.clamp(-STEEPEST_DEG, STEEPEST_DEG)
+    };
+    let [least_deg, most_deg] = [ALTITUDES_M[1], orbit.lowest_m].map(elevation_at);
+    let elevation_deg = (elevation_deg + up).max(least_deg).min(most_deg);
+    let azimuth_deg = (look.azimuth_deg + right).rem_euclid(360.0);
+    let moved_m = (before - axes::direction(azimuth_deg, elevation_deg)) * orbit.distance_m;
+    let camera = &mut state.scene.camera;
+    (camera.azimuth_deg, camera.elevation_deg) = (Some(azimuth_deg), Some(elevation_deg));
+    camera.orientation = None;
+    state.scene.observer.altitude_m = Some(orbit.altitude_m + moved_m.y);
+    move_eye(state, [moved_m.x, moved_m.z]);
 }
 
 fn zoom(state: &mut State, look: Look, factor: f64) {

@@ -10,13 +10,14 @@ use airlight::glam::DVec3;
 use airlight::optics::PhaseFunction;
 use airlight::scene::{Scene, SunState};
 use airlight::sky::{Sky, SkySettings, SunCoverage};
-use airlight::spectrum::rgb::srgb_decode;
+use airlight::spectrum::rgb::{srgb_decode, srgb_encode};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use airlight::sun::Moment;
 use airlight_image::output::PictureFormat;
 use airlight_image::{Camera, Control, Frame, Projection, Size, read_picture};
 use airlight_render::Renderer;
 use airlight_render::overlay::{OverlayImage, OverlayScene, PreparedOverlay};
+use airlight_render::sky_rows::Layer;
 use airlight_viewer::state::{Compare, CompareMode, Terrain};
 use airlight_viewer::{Options, State, Viewer, screenshot};
 use eframe::egui::{self, Key, Modifiers, Pos2, Role, pos2, vec2};
@@ -195,12 +196,7 @@ fn models_are_compared_with_the_picture() {
     let text = window.state().judgement().unwrap();
     let errors = |text: &str| -> Vec<f64> {
         let lines = text.lines();
-        lines
-            .map(|line| {
-                let (_, after) = line.split_once("luminance ").expect(line);
-                after.split_once(' ').unwrap().0.parse().unwrap()
-            })
-            .collect()
+        lines.map(stated_error).collect()
     };
     let [check, solver] = errors(&text)[..] else {
         panic!("{text}");
@@ -289,7 +285,18 @@ fn any_two_sides_are_compared() {
 fn a_click_reads_the_spectrum() {
     let mut window = window(options(EVENING));
     settle(&mut window);
-    let at = pos2(120.0, 150.0);
+    click(&mut window, pos2(120.0, 150.0));
+    settle(&mut window);
+    window.get_by_label("Copy spectrum as CSV");
+    let (size, pixels) = window.state().pixels().unwrap();
+    let drawn = pixels[150 * size[0] as usize + 120].map(f64::from);
+    let right = window.state().spectrum().unwrap().xyz[1];
+    let error = RgbSpace::Srgb.luminance(drawn) / right - 1.0;
+    assert!(error.abs() < 0.01, "{error}");
+}
+
+/// Presses and releases the primary button at a point.
+fn click(window: &mut Harness<'_, Viewer>, at: Pos2) {
     window.hover_at(at);
     window.step();
     for pressed in [true, false] {
@@ -301,13 +308,162 @@ fn a_click_reads_the_spectrum() {
         });
         window.step();
     }
+}
+
+/// A click on a mountain: its light through the solver's air against the picture.
+#[test]
+fn a_click_reads_terrain_through_its_air() {
+    let mut options = options(EVENING);
+    let scene = &mut options.state.scene;
+    (scene.observer.altitude_m, scene.camera.elevation_deg) = (Some(900.0), Some(-3.0));
+    options.state.terrain = Some(Terrain::default());
+    options.size = [800.0, 420.0];
+    let mut window = window(options);
     settle(&mut window);
-    window.get_by_label("Copy spectrum as CSV");
-    let (size, pixels) = window.state().pixels().unwrap();
-    let drawn = pixels[150 * size[0] as usize + 120].map(f64::from);
-    let right = window.state().spectrum().unwrap().xyz[1];
-    let error = RgbSpace::Srgb.luminance(drawn) / right - 1.0;
-    assert!(error.abs() < 0.01, "{error}");
+    // Not where the window of the reading opens.
+    for [x, y] in [[400, 350], [440, 250], [360, 300]] {
+        click(&mut window, pos2(x as f32 + 0.5, y as f32 + 0.5));
+        settle(&mut window);
+        let (size, pixels) = window.state().pixels().unwrap();
+        let drawn = pixels[(y * size[0] + x) as usize].map(f64::from);
+        let spectrum = window.state().spectrum().unwrap();
+        let transmittance = spectrum.transmittance.as_ref().unwrap();
+        let [blue, red] = [transmittance[1], transmittance[12]];
+        assert!(0.0 < blue && blue < red && red < 1.0, "{transmittance:?}");
+        let error = RgbSpace::Srgb.luminance(drawn) / spectrum.xyz[1] - 1.0;
+        println!("{x} {y}: transmittance {blue:.3} {red:.3}, luminance error {error:.5}");
+        assert!(error.abs() < 0.01, "{error}");
+        window.get_by_label_contains("terrain at");
+        window.get_by_label_contains("horizontal visibility");
+    }
+    // The sky beside it.
+    click(&mut window, pos2(440.0, 40.0));
+    settle(&mut window);
+    assert!(window.state().spectrum().unwrap().transmittance.is_none());
+}
+
+/// The error that is stated, percent of luminance.
+fn stated_error(text: &str) -> f64 {
+    let (_, after) = text.split_once("luminance ").expect(text);
+    after.split_once(' ').unwrap().0.parse().unwrap()
+}
+
+/// Fog of the profiles and droplets that the device draws, against the solver.
+#[test]
+fn one_layer_of_fog_is_that_of_the_solver() {
+    let mut window = window(options(EVENING));
+    for (fog, most_percent) in [
+        ("scale_height_m = 30, droplets = \"coarse\"", 5.0),
+        ("scale_height_m = 30, droplets = \"mist\"", 5.5),
+        ("base_height_m = 20", 10.0),
+        ("base_height_m = 20, droplets = \"mist\"", 11.0),
+        ("top_m = 40, droplets = \"cloud-c1\"", 6.5),
+        ("top_m = 40, droplets = \"isotropic\"", 16.0),
+    ] {
+        let text = format!("{EVENING}\nfog = {{ visibility_m = 600, {fog} }}");
+        let state = State::of_scene(Scene::from_toml(&text).unwrap());
+        window.state_mut().set_state(state);
+        settle(&mut window);
+        let text = window.state().judgement().unwrap();
+        println!("{fog}: {text}");
+        assert!(stated_error(&text) < most_percent, "{fog}: {text}");
+    }
+}
+
+/// Several layers of fog, which the device does not draw: the window shows what the program draws, and saves it.
+#[test]
+fn layers_of_fog_are_drawn_by_the_library() {
+    let text = format!(
+        "{EVENING}\noutput.exposure = 13\n[fog]\nvisibility_m = 800\ntop_m = 20\n[[fog.layers]]\nvisibility_m = 300\nbase_height_m = 10"
+    );
+    let mut window = window(options(&text));
+    settle(&mut window);
+    let judgement = window.state().judgement().unwrap();
+    assert!(judgement.contains("drawn by the library"), "{judgement}");
+    let folder = std::env::temp_dir().join(format!("airlight-layers-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let [saved, right] = ["saved.png", "right.png"].map(|name| folder.join(name));
+    window.state_mut().save(&saved).unwrap();
+    let ([width, height], device) = window.state().pixels().unwrap();
+    let mut scene = window.state().state().scene.clone();
+    scene.camera.size = Some([width, height]);
+    scene.output.file = Some(right.display().to_string());
+    let renderer = Renderer::new(&scene).unwrap();
+    let sun = renderer.sun(None).unwrap();
+    let prepared = renderer.prepare(renderer.suns_near(&sun), Control::default());
+    let frame = renderer.frame(prepared.unwrap().as_ref(), None).unwrap();
+    frame.write(&right, Control::default()).unwrap();
+    assert_eq!(
+        std::fs::read(&saved).unwrap(),
+        std::fs::read(&right).unwrap()
+    );
+    let right = read_picture(&right, None).unwrap();
+    let shown = window.render().unwrap();
+    let (mut worst, mut squares, mut count) = (0.0f64, 0.0, 0);
+    // Above the sentences in the corner.
+    for k in (0..width * (height - 100)).step_by(37) {
+        let (x, y) = (k % width, k / width);
+        for (channel, right) in shown.get_pixel(x, y).0[..3]
+            .iter()
+            .zip(&right.rgb[3 * k as usize..])
+        {
+            let right = 255.0 * srgb_encode(f64::from(*right));
+            let apart = (f64::from(*channel) - right).abs();
+            (worst, squares, count) = (worst.max(apart), squares + apart * apart, count + 1);
+        }
+    }
+    let rms = (squares / f64::from(count)).sqrt();
+    println!("levels: rms {rms:.2}, worst {worst:.1}");
+    assert!(rms < 2.0, "{rms}");
+    // The first layer alone, which the device draws while the picture changes, is another picture.
+    let luminance = |k: usize| RgbSpace::Srgb.luminance(device[k].map(f64::from));
+    let first = (0..device.len()).step_by(997).map(luminance).sum::<f64>();
+    let solved = frame.pixels(&renderer.layout().only_frame().unwrap(), Layer::Sky);
+    let luminance = |k: usize| RgbSpace::Srgb.luminance(solved[k].map(f64::from));
+    let all = (0..device.len()).step_by(997).map(luminance).sum::<f64>();
+    assert!((first / all - 1.0).abs() > 0.05, "{first} {all}");
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// The eye moves around the point of the ground in the centre of the picture, which stays where it is among the lights.
+#[test]
+fn the_eye_orbits_what_is_ahead() {
+    let mut options = options(NIGHT);
+    let scene = &mut options.state.scene;
+    (scene.observer.altitude_m, scene.camera.elevation_deg) = (Some(40.0), Some(-30.0));
+    scene.lights = Scene::from_toml(LIGHTS).unwrap().lights;
+    let mut window = window(options);
+    settle(&mut window);
+    // The point in the centre from the first light.
+    let centre = |window: &Harness<'_, Viewer>| {
+        let scene = &window.state().state().scene;
+        let camera = &scene.camera;
+        let direction = axes::direction(camera.azimuth_deg.unwrap(), camera.elevation_deg.unwrap());
+        let eye_m = DVec3::Y * scene.observer.altitude_m.unwrap();
+        let light_m = DVec3::from_array(scene.lights[0].position_m.unwrap());
+        eye_m - direction * (eye_m.y / direction.y) - light_m
+    };
+    let before = (centre(&window), window.state().state().clone());
+    window.get_by_label("Picture of the sky").focus();
+    window.step();
+    for key in [Key::ArrowRight, Key::ArrowRight, Key::ArrowUp] {
+        window.key_press_modifiers(Modifiers::SHIFT, key);
+        settle(&mut window);
+    }
+    let scene = &window.state().state().scene;
+    assert!((scene.camera.azimuth_deg.unwrap() - 350.0).abs() < 1e-6);
+    assert!((scene.camera.elevation_deg.unwrap() + 35.0).abs() < 1e-6);
+    assert!(scene.observer.altitude_m.unwrap() > 45.0);
+    let apart_m = (centre(&window) - before.0).length();
+    assert!(apart_m < 0.1, "{apart_m}");
+    // By dragging, in the mode that is chosen; the eye stays above the ground.
+    window.state_mut().set_state(before.1);
+    settle(&mut window);
+    choose(&mut window, "Dragging", "orbits what is ahead");
+    drag(&mut window, pos2(150.0, 200.0), pos2(150.0, 20.0));
+    settle(&mut window);
+    let altitude_m = window.state().state().scene.observer.altitude_m.unwrap();
+    assert!((2.0..2.1).contains(&altitude_m), "{altitude_m}");
 }
 
 #[test]
@@ -764,6 +920,18 @@ fn every_control_has_a_name_and_is_reached_by_keyboard() {
     }
 }
 
+/// Chooses a value of a control.
+fn choose(window: &mut Harness<'_, Viewer>, name: &str, value: &str) {
+    window
+        .get_by_role_and_label(Role::ComboBox, name)
+        .click_accesskit();
+    window.step();
+    window.step();
+    window.get_by_label(value).click_accesskit();
+    window.step();
+    window.step();
+}
+
 #[test]
 fn pictures_of_half_the_resolution_have_a_quarter_of_the_pixels() {
     let mut options = options(EVENING);
@@ -772,17 +940,7 @@ fn pictures_of_half_the_resolution_have_a_quarter_of_the_pixels() {
     let mut window = window(options);
     settle(&mut window);
     let (full, _) = window.state().pixels().unwrap();
-    let combo = |window: &mut Harness<'_, Viewer>, name: &str| {
-        window
-            .get_by_role_and_label(Role::ComboBox, name)
-            .click_accesskit();
-        window.step();
-        window.step();
-    };
-    combo(&mut window, "Resolution");
-    window.get_by_label("half").click_accesskit();
-    window.step();
-    window.step();
+    choose(&mut window, "Resolution", "half");
     let (half, _) = window.state().pixels().unwrap();
     assert_eq!(half, full.map(|side| side / 2));
 }
