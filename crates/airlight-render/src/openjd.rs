@@ -1,6 +1,6 @@
 //! [`JobTemplate`]: jobs of Open Job Description, which render farms run.
 
-use crate::batch::BatchPlan;
+use crate::batch::{BatchPlan, is_batch};
 use crate::error::RenderError;
 use crate::layout::PictureFile;
 use crate::renderer::Renderer;
@@ -69,15 +69,17 @@ impl JobTemplate {
     /// tasks there are 16, or fewer for few inputs.
     ///
     /// # Errors
-    /// [`RenderError`] for a batch of one input or of one shard, for a manifest at a path of its own or pictures to replace, for more
+    /// [`RenderError`] for a single picture, for one shard of a batch, for a manifest at a path of its own or pictures to replace, for more
     /// tasks than there are inputs, and for a description that is too large for a template.
     pub fn of_batch(plan: &BatchPlan, tasks: Option<u32>) -> Result<Self, RenderError> {
         let (scene, settings) = (plan.scene(), plan.settings());
         let colour = &scene.overlay.colour;
         let inputs = plan.found().inputs.len() as u64;
-        if inputs < 2 {
+        let is_batch = is_batch(colour, scene.output()?)
+            .map_err(|error| RenderError::setting(error.to_string()))?;
+        if !is_batch {
             return Err(RenderError::setting(format!(
-                "a job: expected several pictures, got `{}`; try a folder",
+                "a job: expected a folder of pictures or a pattern, got `{}`",
                 colour.display()
             )));
         }

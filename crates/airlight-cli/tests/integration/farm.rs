@@ -152,7 +152,7 @@ fn a_job_of_fog_makes_the_pictures_of_the_command() {
         (
             "fog rgb/a.png --depth depth/a_m.png --visibility-m 9 -o a.png --openjd a.json"
                 .to_owned(),
-            "expected several pictures",
+            "expected a folder of pictures",
         ),
     ] {
         let output = run(&folder, &words);
@@ -162,6 +162,11 @@ fn a_job_of_fog_makes_the_pictures_of_the_command() {
             "{words}: {said}"
         );
     }
+    // A folder may hold a single picture.
+    for name in ["b", "c"] {
+        std::fs::remove_file(folder.file(format!("rgb/{name}.png"))).unwrap();
+    }
+    succeed(&folder, &format!("{words} -o farm/ --openjd one.json"));
 }
 
 #[test]
