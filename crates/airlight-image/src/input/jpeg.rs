@@ -6,8 +6,13 @@ use super::{
     picture::{LightReference, Picture, SampleBits},
     source::{DecodeError, Source, checked_size, reserve, sample_count},
 };
-use crate::{Notes, Size};
-use zune_core::{bytestream::ZCursor, colorspace::ColorSpace, options::DecoderOptions};
+use crate::{Control, Notes, Size};
+use std::io;
+use zune_core::{
+    bytestream::{ZByteIoError, ZByteReaderTrait, ZCursor, ZSeekFrom},
+    colorspace::ColorSpace,
+    options::DecoderOptions,
+};
 use zune_jpeg::{JpegDecoder, errors::DecodeErrors};
 
 pub(super) fn read(mut source: Source<'_>) -> Result<Picture, DecodeError> {
@@ -18,7 +23,9 @@ pub(super) fn read(mut source: Source<'_>) -> Result<Picture, DecodeError> {
     let options = DecoderOptions::default()
         .set_max_width(Size::MAX as usize)
         .set_max_height(Size::MAX as usize);
-    let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
+    let control = source.control();
+    let bytes = TrackedBytes::new(bytes, control);
+    let mut decoder = JpegDecoder::new_with_options(bytes, options);
     decoder.decode_headers().map_err(failed)?;
     let info = decoder
         .info()
@@ -53,6 +60,8 @@ pub(super) fn read(mut source: Source<'_>) -> Result<Picture, DecodeError> {
     let mut rgb = reserve(sample_count(size, 3))?;
     let mut decoded = vec![0; count];
     decoder.decode_into(&mut decoded).map_err(failed)?;
+    // The decoder takes an end of the bytes for missing data, which it replaces.
+    control.check().map_err(io::Error::other)?;
     // An array, as every byte is a valid index of it.
     let mut light = [0.0; 256];
     light
@@ -73,6 +82,89 @@ pub(super) fn read(mut source: Source<'_>) -> Result<Picture, DecodeError> {
     };
     picture.note_conversion(decoding.name());
     Ok(picture.turned(exif.orientation))
+}
+
+/// Bytes of a file in memory that end once the caller has cancelled.
+struct TrackedBytes<'a> {
+    bytes: ZCursor<Vec<u8>>,
+    control: Control<'a>,
+    reads: u32,
+}
+
+impl<'a> TrackedBytes<'a> {
+    /// Reads of a few bytes between two looks at the control: well below a millisecond.
+    const INTERVAL: u32 = 4096;
+
+    fn new(bytes: Vec<u8>, control: Control<'a>) -> Self {
+        Self {
+            bytes: ZCursor::new(bytes),
+            control,
+            reads: 0,
+        }
+    }
+
+    #[inline(always)]
+    fn check(&mut self) -> Result<(), ZByteIoError> {
+        self.reads += 1;
+        match self.reads >= Self::INTERVAL {
+            true => self.look(),
+            false => Ok(()),
+        }
+    }
+
+    /// Begins to count again only where the caller goes on, so that all later reads fail otherwise.
+    #[cold]
+    fn look(&mut self) -> Result<(), ZByteIoError> {
+        self.control
+            .check()
+            .map_err(|_| ZByteIoError::Generic("cancelled"))?;
+        self.reads = 0;
+        Ok(())
+    }
+}
+
+impl ZByteReaderTrait for TrackedBytes<'_> {
+    #[inline(always)]
+    fn read_byte_no_error(&mut self) -> u8 {
+        self.bytes.read_byte_no_error()
+    }
+
+    #[inline(always)]
+    fn read_exact_bytes(&mut self, buffer: &mut [u8]) -> Result<(), ZByteIoError> {
+        self.check()?;
+        self.bytes.read_exact_bytes(buffer)
+    }
+
+    fn read_bytes(&mut self, buffer: &mut [u8]) -> Result<usize, ZByteIoError> {
+        self.check()?;
+        self.bytes.read_bytes(buffer)
+    }
+
+    fn peek_bytes(&mut self, buffer: &mut [u8]) -> Result<usize, ZByteIoError> {
+        self.bytes.peek_bytes(buffer)
+    }
+
+    fn peek_exact_bytes(&mut self, buffer: &mut [u8]) -> Result<(), ZByteIoError> {
+        self.bytes.peek_exact_bytes(buffer)
+    }
+
+    fn z_seek(&mut self, to: ZSeekFrom) -> Result<u64, ZByteIoError> {
+        self.bytes.z_seek(to)
+    }
+
+    #[inline(always)]
+    fn is_eof(&mut self) -> Result<bool, ZByteIoError> {
+        self.check()?;
+        self.bytes.is_eof()
+    }
+
+    fn z_position(&mut self) -> Result<u64, ZByteIoError> {
+        self.bytes.z_position()
+    }
+
+    fn read_remaining(&mut self, rest: &mut Vec<u8>) -> Result<usize, ZByteIoError> {
+        self.bytes.read_remaining(rest)
+    }
 }
 
 /// Width of a pixel over its height, by the densities of the JFIF header: pixels per unit, of which wide ones are few.
@@ -162,5 +254,27 @@ fn failed(error: DecodeErrors) -> DecodeError {
             let reason = format!("{other:?}");
             DecodeError::Invalid(format!("corrupt JPEG data: {}", reason.trim()))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    #[test]
+    fn bytes_end_soon_after_cancellation() {
+        let cancel = AtomicBool::new(false);
+        let mut bytes = TrackedBytes::new(vec![1; 1 << 20], Control::cancelled_by(&cancel));
+        let mut four = [0; 4];
+        for _ in 0..100_000 {
+            bytes.read_exact_bytes(&mut four).unwrap();
+        }
+        cancel.store(true, Ordering::Relaxed);
+        let mut read = || bytes.read_exact_bytes(&mut four);
+        let more = (0..).take_while(|_| read().is_ok()).count();
+        assert!(more < TrackedBytes::INTERVAL as usize, "{more}");
+        assert!(read().is_err());
+        assert!(bytes.is_eof().is_err());
     }
 }

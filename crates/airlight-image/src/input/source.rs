@@ -73,14 +73,19 @@ enum Bytes {
     Memory(Cursor<Vec<u8>>),
 }
 
-impl Source<'_> {
+impl<'a> Source<'a> {
+    /// How the caller cancels reading.
+    pub(super) fn control(&self) -> Control<'a> {
+        self.reader.get_ref().control
+    }
+
     /// The file with other contents, in memory.
     pub(super) fn with_bytes(self, bytes: Vec<u8>) -> Self {
         let length = bytes.len() as u64;
         let tracked = TrackedFile {
             bytes: Bytes::Memory(Cursor::new(bytes)),
             ended: self.ended.clone(),
-            control: self.reader.get_ref().control,
+            control: self.control(),
         };
         Self {
             reader: BufReader::new(tracked),
@@ -98,7 +103,7 @@ impl Source<'_> {
         let tracked = TrackedFile {
             bytes: Bytes::Memory(Cursor::new(memory.get_ref().clone())),
             ended: ended.clone(),
-            control: self.reader.get_ref().control,
+            control: self.control(),
         };
         Some(Self {
             kind: self.kind,
@@ -211,7 +216,7 @@ pub(super) fn decode_source<'a, T>(
     path: &Path,
     decode: impl FnOnce(Source<'a>) -> Result<T, DecodeError>,
 ) -> Result<T, ImageError> {
-    let (ended, control) = (source.ended.clone(), source.reader.get_ref().control);
+    let (ended, control) = (source.ended.clone(), source.control());
     // Some of the decoding libraries panic on corrupt files.
     let decoded = panic::catch_unwind(AssertUnwindSafe(|| decode(source)))
         .unwrap_or_else(|_| Err(DecodeError::invalid("corrupt data: the decoder failed")));
