@@ -292,7 +292,7 @@ impl View {
     /// Unit vector towards the sun: x east, y up, z south.
     #[getter]
     fn sun(&self) -> [f64; 3] {
-        self.view.sun_state().direction.to_array()
+        self.view.sun().to_array()
     }
 
     /// Elevation of the horizon, degrees: 0 on the ground, below 0 from above.
@@ -609,7 +609,7 @@ impl View {
     }
 
     fn __repr__(&self) -> String {
-        let sun = self.view.sun_state().direction;
+        let sun = self.view.sun();
         format!(
             "View({:?}, sun {:.2} degrees high at azimuth {:.2})",
             self.view.sky().atmosphere().name,

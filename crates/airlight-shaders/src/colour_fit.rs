@@ -98,15 +98,15 @@ impl ColourFit {
     /// # Errors
     /// [`SkyError`] for a view that the fit is not prepared for and cannot be solved for.
     pub fn sun_illuminance_lx(&self, view: &View, space: RgbSpace) -> Result<[f64; 3], SkyError> {
-        let many = under_sun_of(&self.many, view)?;
+        let many = under_source_of(&self.many, view)?;
         let xyz = self.many.grid().to_xyz(&many.sun_irradiance());
         Ok(rgb::apply(&space.from_xyz_matrix(), xyz))
     }
 
     /// The weights of a view: least squares over its light and transmittances, from the eye to the end of rays and to points nearby.
     pub(crate) fn xyz_weights(&self, view: &View) -> Result<XyzWeights, SkyError> {
-        let few = under_sun_of(&self.few, view)?;
-        let many = under_sun_of(&self.many, view)?;
+        let few = under_source_of(&self.few, view)?;
+        let many = under_source_of(&self.many, view)?;
         let grid = self.many.grid();
         let solar = many.solar_irradiance();
         let lit = |response: &mut dyn Iterator<Item = f64>| {
@@ -150,10 +150,10 @@ impl ColourFit {
     }
 }
 
-/// The view of another sky at the same place under the same sun.
-fn under_sun_of(sky: &Sky, view: &View) -> Result<View, SkyError> {
+/// The view of another sky at the same place under the same source.
+fn under_source_of(sky: &Sky, view: &View) -> Result<View, SkyError> {
     let altitude_m = view.radius_m() - sky.atmosphere().planet.radius_m;
-    sky.try_view(altitude_m, *view.sun_state())
+    sky.try_view(altitude_m, *view.source())
 }
 
 fn four(values: &[f64]) -> [f64; 4] {
@@ -317,7 +317,7 @@ mod tests {
                 let sky = Sky::prepare(&air.atmosphere(), &grid, &settings).unwrap();
                 sky.view(500.0, axes::direction(180.0, sun_deg))
             });
-            let [few, many] = [&fit.few, &fit.many].map(|sky| under_sun_of(sky, &view).unwrap());
+            let [few, many] = [&fit.few, &fit.many].map(|sky| under_source_of(sky, &view).unwrap());
             let along = |direction| {
                 [&view, &few, &many, &right]
                     .map(|view| response(view, &view.along(direction, None)))

@@ -9,7 +9,6 @@ use super::{
 use crate::control::Control;
 use crate::night::{MoonState, NightGlow, NightState};
 use crate::sky::{Sky, SkyError, SunCoverage, View};
-use crate::sun::SunState;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Depth of the moon below the horizon from which its light does not matter: that of a full moon is then less than a thousandth of
@@ -82,7 +81,7 @@ impl NightSky {
         let moon = night.moon.map(|moon| -> Result<_, SceneError> {
             let view = self.moonlit(altitude_m, &moon, control)?;
             let lit = SolvedView::new(view, self.fog.as_ref(), channels, control)?;
-            Ok(Arc::new(lit.with_moon(moon)) as Arc<dyn RadianceView>)
+            Ok(Arc::new(lit) as Arc<dyn RadianceView>)
         });
         let glow = self.glow(altitude_m, night, channels, control)?;
         let lighting = match self.fog {
@@ -124,13 +123,7 @@ impl NightSky {
         moon: &MoonState,
         control: Control<'_>,
     ) -> Result<View, SkyError> {
-        let ratios = self.sky.grid().wavelengths_nm().iter();
-        let source = SunState::from(moon.direction);
-        let view = self.sky.view_with(altitude_m, source, control)?;
-        Ok(view.under_source(
-            ratios.map(|&nm| moon.irradiance_ratio(nm)).collect(),
-            moon.disc(),
-        ))
+        self.sky.view_with(altitude_m, *moon, control)
     }
 
     /// The diffuse lights of a night for an eye at an altitude, m, without fog.

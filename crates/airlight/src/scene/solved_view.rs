@@ -7,8 +7,9 @@ use super::sun_disc_table::SunDiscTable;
 use super::{Channels, FogLayers, IrradianceMap, RadianceView, RowSampler, SceneError};
 use crate::axes;
 use crate::control::{Cancelled, Control};
-use crate::night::MoonState;
-use crate::sky::{LineOfSight, PolarisationTable, PolarisedLight, SkyColumns, SkyTable, View};
+use crate::sky::{
+    LightSource, LineOfSight, PolarisationTable, PolarisedLight, SkyColumns, SkyTable, View,
+};
 use crate::spectrum::WavelengthGrid;
 use crate::sun::SunDisc;
 use glam::DVec3;
@@ -27,8 +28,6 @@ pub(crate) struct SolvedView {
     /// Air without fog, for path optics in front of objects.
     air: OnceLock<FogInSky>,
     disc: OnceLock<Option<SunDiscTable>>,
-    /// The moon that lights the view in the place of the sun.
-    moon: Option<MoonState>,
     irradiance: OnceLock<IrradianceMap>,
     /// Irradiance of a horizontal surface by the sky.
     horizontal_irradiance: OnceLock<Vec<f32>>,
@@ -94,7 +93,10 @@ impl SolvedView {
         };
         let grid = match channels {
             Channels::Spectral => {
-                let factor = view.sun_state().irradiance_factor();
+                let factor = match view.source() {
+                    LightSource::Sun(sun) => sun.irradiance_factor(),
+                    LightSource::Moon(_) => 1.0,
+                };
                 Some(view.sky().grid().with_solar_factor(factor))
             }
             Channels::Rgb(_) => None,
@@ -107,18 +109,9 @@ impl SolvedView {
             fog,
             air: OnceLock::new(),
             disc: OnceLock::new(),
-            moon: None,
             irradiance: OnceLock::new(),
             horizontal_irradiance: OnceLock::new(),
         })
-    }
-
-    /// The same view of a sky that the moon lights, whose disc shows its phase.
-    pub fn with_moon(self, moon: MoonState) -> Self {
-        Self {
-            moon: Some(moon),
-            ..self
-        }
     }
 
     /// The view of the solved sky.
@@ -246,10 +239,8 @@ impl RadianceView for SolvedView {
         let values = out.chunks_exact_mut(self.clear.channels());
         for (&direction, values) in directions.iter().zip(values) {
             table.sample(direction, values);
-            if let Some(moon) = &self.moon {
-                let relative = moon.relative_radiance(direction) as f32;
-                values.iter_mut().for_each(|v| *v *= relative);
-            }
+            let relative = self.view.source().relative_radiance(direction) as f32;
+            values.iter_mut().for_each(|v| *v *= relative);
         }
     }
 

@@ -34,6 +34,7 @@ mod harmonics;
 mod horizon;
 mod horizontal_exchange;
 mod light;
+mod light_source;
 mod mixing;
 mod orders;
 mod peaked;
@@ -53,6 +54,7 @@ mod transport;
 mod view;
 
 pub use coverage::SunCoverage;
+pub use light_source::LightSource;
 pub(crate) use peaked::Peaked;
 pub use rgb_view::RgbView;
 pub use settings::{Directions, OrderSettings, Scattering, SkyError, SkySettings};

@@ -1,28 +1,30 @@
 //! View of a prepared sky from one position under one sun.
 
 use super::block::{BlockLight, SampleLight, TableRow};
+use super::light_source::LightSource;
 use super::peaked::Part;
 use super::ray_bundle::RayBundle;
 use super::settings::SkyError;
 use super::solver::Sky;
 use crate::axes;
 use crate::control::Control;
-use crate::sun::{SunDisc, SunState};
+use crate::sun::SunDisc;
 use crate::transfer::ray::Ray;
 use glam::DVec3;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A prepared sky seen from one altitude under one position of the sun.
+/// A prepared sky seen from one altitude under one position of the sun, or of the moon in its place: what the methods say of the sun
+/// is then that of the moon.
 #[derive(Clone, Debug)]
 pub struct View {
     sky: Sky,
     position: DVec3,
-    sun: SunState,
-    /// The disc at the distance of the sun.
+    source: LightSource,
+    /// The disc of the source.
     disc: SunDisc,
-    /// Irradiance of the source relative to that of the sun, one for each wavelength; `None` for the sun itself.
-    source: Option<Arc<[f64]>>,
+    /// Irradiance of the source outside the air, by wavelength, W m^-2 nm^-1.
+    irradiance: Arc<[f32]>,
 }
 
 /// Light along a view ray, without the direct light of the sun's disc. Each list has one entry per wavelength of the sky's
@@ -63,8 +65,9 @@ impl LineOfSight {
 }
 
 impl Sky {
-    /// View from `altitude_m` (m; raised to the ground if below it) under a sun: a [`SunState`], or a direction (world axes:
-    /// [`crate::axes`]), in which the sun is at the planet's mean distance.
+    /// View from `altitude_m` (m; raised to the ground if below it) under a source of light: a [`SunState`](crate::sun::SunState), a
+    /// direction (world axes: [`crate::axes`]), in which the sun is at the planet's mean distance, or a
+    /// [`MoonState`](crate::night::MoonState).
     ///
     /// A view that the sky is not prepared for ([`Sky::covers`]) solves for all suns and altitudes when it is the first of its kind,
     /// which takes a second or two, and is as right as the others.
@@ -72,8 +75,8 @@ impl Sky {
     /// # Panics
     /// Where the sky is not prepared for the view and that solution does not converge, as may happen in optically thick air. See
     /// [`Sky::try_view`].
-    pub fn view(&self, altitude_m: f64, sun: impl Into<SunState>) -> View {
-        self.try_view(altitude_m, sun)
+    pub fn view(&self, altitude_m: f64, source: impl Into<LightSource>) -> View {
+        self.try_view(altitude_m, source)
             .unwrap_or_else(|error| panic!("a view that the sky is not prepared for: {error}"))
     }
 
@@ -81,8 +84,12 @@ impl Sky {
     ///
     /// # Errors
     /// [`SkyError::NotConverged`].
-    pub fn try_view(&self, altitude_m: f64, sun: impl Into<SunState>) -> Result<View, SkyError> {
-        self.view_with(altitude_m, sun, Control::default())
+    pub fn try_view(
+        &self,
+        altitude_m: f64,
+        source: impl Into<LightSource>,
+    ) -> Result<View, SkyError> {
+        self.view_with(altitude_m, source, Control::default())
     }
 
     /// As [`Sky::try_view`], with progress and cancellation of the solution for all suns, if the view needs it.
@@ -92,10 +99,10 @@ impl Sky {
     pub fn view_with(
         &self,
         altitude_m: f64,
-        sun: impl Into<SunState>,
+        source: impl Into<LightSource>,
         control: Control<'_>,
     ) -> Result<View, SkyError> {
-        View::new(self, altitude_m, sun.into(), control)
+        View::new(self, altitude_m, source.into(), control)
     }
 }
 
@@ -103,43 +110,23 @@ impl View {
     fn new(
         sky: &Sky,
         altitude_m: f64,
-        sun: SunState,
+        source: LightSource,
         control: Control<'_>,
     ) -> Result<Self, SkyError> {
-        let sun_elevation_deg = axes::elevation_deg(sun.direction.normalize());
-        let sky = sky.covering(altitude_m, sun_elevation_deg, control)?;
+        let source = source.normalised();
+        let sky = sky.covering(altitude_m, axes::elevation_deg(source.direction()), control)?;
         let radius_m = (sky.shell().planet_radius_m + altitude_m).max(sky.shell().ground_radius_m);
+        let nodes = sky.grid().wavelengths_nm().iter();
+        let irradiance = nodes
+            .zip(sky.grid().solar_irradiance())
+            .map(|(&nm, e)| (e * source.irradiance_ratio(nm)) as f32);
         Ok(Self {
-            sky: sky.clone(),
+            irradiance: irradiance.collect(),
             position: DVec3::Y * radius_m,
-            sun: SunState {
-                direction: sun.direction.normalize(),
-                ..sun
-            },
-            disc: sun.disc(&sky.atmosphere().sun),
-            source: None,
+            disc: source.disc(&sky.atmosphere().sun),
+            sky: sky.clone(),
+            source,
         })
-    }
-
-    /// This view under another distant source in the place of the sun, such as the moon: its irradiance outside the air
-    /// relative to that of the sun at each wavelength of the sky's grid, and its disc.
-    pub(crate) fn under_source(self, relative_irradiance: Vec<f64>, disc: SunDisc) -> Self {
-        Self {
-            source: Some(relative_irradiance.into()),
-            disc,
-            ..self
-        }
-    }
-
-    /// This view with the planet at `ratio` times its mean distance from the sun: scales the irradiance by `1 / ratio^2` and
-    /// the angular size of the disc.
-    pub fn at_sun_distance(self, ratio: f64) -> Self {
-        let sun = self.sun.at_distance_ratio(ratio);
-        Self {
-            disc: sun.disc(&self.sky.atmosphere().sun),
-            sun,
-            ..self
-        }
     }
 
     /// This view from another altitude (m; raised to the ground if below it), vertically above or below.
@@ -147,12 +134,7 @@ impl View {
     /// # Errors
     /// As [`Sky::try_view`].
     pub fn at_altitude(&self, altitude_m: f64) -> Result<Self, SkyError> {
-        let place = Self::new(&self.sky, altitude_m, self.sun, Control::default())?;
-        Ok(Self {
-            sky: place.sky,
-            position: place.position,
-            ..self.clone()
-        })
+        Self::new(&self.sky, altitude_m, self.source, Control::default())
     }
 
     /// The sky.
@@ -160,14 +142,14 @@ impl View {
         &self.sky
     }
 
-    /// Direction and distance of the sun.
-    pub fn sun_state(&self) -> &SunState {
-        &self.sun
+    /// What lights the view.
+    pub fn source(&self) -> &LightSource {
+        &self.source
     }
 
     /// Unit vector towards the sun.
     pub fn sun(&self) -> DVec3 {
-        self.sun.direction
+        self.source.direction()
     }
 
     /// The sun's disc as seen from this distance.
@@ -182,19 +164,11 @@ impl View {
 
     /// Solar irradiance at the top of the atmosphere on a surface that faces the sun, W m^-2 nm^-1.
     pub fn solar_irradiance(&self) -> Vec<f32> {
-        let factor = self.sun.irradiance_factor();
-        let solar = self.sky.grid().solar_irradiance().iter();
-        match &self.source {
-            None => solar.map(|e| (e * factor) as f32).collect(),
-            Some(ratios) => solar
-                .zip(ratios.iter())
-                .map(|(e, ratio)| (e * factor * ratio) as f32)
-                .collect(),
-        }
+        self.irradiance.to_vec()
     }
 
     pub(super) fn ray(&self, direction: DVec3) -> Ray {
-        Ray::new(self.position, direction, self.sun.direction)
+        Ray::new(self.position, direction, self.sun())
     }
 
     /// Light along the unit vector `direction`, over at most `limit_m` metres; `None` for the whole ray to the ground or to
@@ -303,7 +277,7 @@ impl View {
     /// transmittances, down to the horizon.
     pub fn sun_irradiance(&self) -> Vec<f32> {
         let radius = self.disc.angular_radius_rad;
-        let sun = self.sun.direction;
+        let sun = self.sun();
         let across = sun.cross(DVec3::Y);
         let up = if across.length() > 1e-9 {
             across.normalize().cross(sun).normalize()
@@ -358,20 +332,22 @@ impl View {
             .collect()
     }
 
-    /// Radiance of the sun's disc along `direction`, attenuated by the air, W m^-2 sr^-1 nm^-1; zero outside the disc and where
-    /// the planet hides it.
+    /// Radiance of the sun's disc along `direction`, attenuated by the air, W m^-2 sr^-1 nm^-1; zero outside the disc, on the night side of
+    /// the moon and where the planet hides it.
     pub fn sun_disc_radiance(&self, direction: DVec3) -> Vec<f32> {
         let direction = direction.normalize();
-        let angle = direction.angle_between(self.sun.direction);
+        let angle = direction.angle_between(self.sun());
         if angle >= self.disc.angular_radius_rad {
             return vec![0.0; self.sky.grid().len()];
         }
         let transmittance = self.transmittance_to_space(direction);
-        self.solar_irradiance()
+        let relative = self.source.relative_radiance(direction);
+        let disc = |nm: f64| (relative * self.disc.radiance_per_irradiance(angle, nm)) as f32;
+        self.irradiance
             .iter()
             .zip(&transmittance)
             .zip(self.sky.grid().wavelengths_nm())
-            .map(|((e, t), &nm)| e * t * self.disc.radiance_per_irradiance(angle, nm) as f32)
+            .map(|((e, t), &nm)| e * t * disc(nm))
             .collect()
     }
 }
