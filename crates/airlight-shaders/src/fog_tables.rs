@@ -1,10 +1,14 @@
 //! [`FogTables`]: the tables of `wgsl/fog_table.wgsl`, filled from a fog of the library.
 
+use crate::sky_tables::SkyTables;
+use crate::twins::columns::INFINITE_M;
 use crate::twins::exponentials::OPAQUE;
 use crate::twins::fog_table::{
     FOG_AZIMUTHS, FOG_DISTANCES, FOG_LOGARITHMIC, FOG_ROWS, FogTableView,
 };
-use crate::twins::sky_tables::{PHASE_ANGLES, one_minus_cos_from_phase_place};
+use crate::twins::sky_tables::{
+    PHASE_ANGLES, SkyView, direction_from_azimuth_elevation, one_minus_cos_from_phase_place,
+};
 use crate::twins::texture::Texture;
 use airlight::fog::{FOG_STREAMS, RaySegment, RgbFog, RgbFogParts, RgbFogTable};
 use glam::{Vec3, Vec4};
@@ -56,6 +60,37 @@ impl FogTables {
     /// # Errors
     /// [`FogTablesError`] for fog without multiple scattering, of several layers, or over round ground.
     pub fn new(fog: &RgbFog, eye_height_m: f64) -> Result<Self, FogTablesError> {
+        Self::filled(fog, eye_height_m, None)
+    }
+
+    /// As [`FogTables::new`], of a fog in air: in front of what the air has dimmed and brightened, they have the effect of fog and air in their
+    /// order along each ray.
+    ///
+    /// Light that the air scatters behind a part of the fog is dimmed by that part alone, and the fog's light by the air before it. With
+    /// `T_a`, `S_a` of the air and `T_f`, `S_f` of the fog up to a distance, the light in addition to that behind the whole fog is
+    ///
+    /// ```text
+    /// (1 - T_f) <S_a> + <T_a> S_f
+    /// ```
+    ///
+    /// where `<f>` is the mean of `f` over the light that the fog removes on the way: per unit of opacity both vary slowly with distance and
+    /// direction, as the tables do.
+    ///
+    /// # Errors
+    /// As [`FogTables::new`].
+    pub fn in_air(
+        fog: &RgbFog,
+        eye_height_m: f64,
+        air: &SkyTables,
+    ) -> Result<Self, FogTablesError> {
+        Self::filled(fog, eye_height_m, Some(air))
+    }
+
+    fn filled(
+        fog: &RgbFog,
+        eye_height_m: f64,
+        air: Option<&SkyTables>,
+    ) -> Result<Self, FogTablesError> {
         let table = fog.seen_from(eye_height_m);
         let sun = fog.lighting().sun;
         let ground_m = (eye_height_m - fog.ground().height_m).max(0.0);
@@ -66,15 +101,19 @@ impl FogTables {
         let (below, above) = (depth(-1.0, ground_m), depth(1.0, f64::INFINITY));
         let per_sine = |depth: Vec3| 1.0 / (0.1 * depth.element_sum() / 3.0).clamp(1e-6, 0.05);
         let [below_per_sine, above_per_sine] = [below, above].map(per_sine);
-        let mut nodes: Vec<Vec<RgbFogParts>> = Vec::with_capacity(2 * ROWS);
+        let mut rows = Vec::with_capacity(2 * ROWS);
         for (sign, per_sine) in [(-1.0, below_per_sine), (1.0, above_per_sine)] {
             for row in 0..ROWS {
                 let place = (row as f64 / (ROWS - 1) as f64).max(BESIDE_LEVEL);
                 let sine = sign * elevation_at(f64::from(per_sine), place).sin();
-                let parts = row_of(fog, &table, eye_height_m, ground_m, sine);
-                nodes.push(parts.ok_or(FogTablesError::Fog)?);
+                rows.push(RowOfRays::new(fog, eye_height_m, ground_m, sine));
             }
         }
+        let parts = rows
+            .iter()
+            .map(|row| table.parts(row.sine, &row.distances_m));
+        let nodes: Option<Vec<Vec<RgbFogParts>>> = parts.collect();
+        let nodes = nodes.ok_or(FogTablesError::Fog)?;
         let mut view = FogTableView {
             sun: sun.map_or(Vec3::Y, |sun| sun.direction.as_vec3()),
             below_per_sine,
@@ -84,12 +123,14 @@ impl FogTables {
             depth_above: above,
             sunlit_scale: 1.0,
         };
-        let diffuse = diffuse(
-            &nodes,
-            [below_per_sine, above_per_sine],
-            &mut view.diffuse_scale,
-        );
-        let streams = streams(&nodes, &mut view.sunlit_scale);
+        let in_front = |air| {
+            rows.iter()
+                .map(|row| AirBefore::new(row, air, view.sun))
+                .collect()
+        };
+        let before: Option<Vec<AirBefore>> = air.map(in_front);
+        let diffuse = diffuse(&rows, &nodes, before.as_deref(), &mut view.diffuse_scale);
+        let streams = streams(&nodes, before.as_deref(), &mut view.sunlit_scale);
         let stream_phase = stream_phase(&table, &mut view.sunlit_scale);
         Ok(Self {
             view,
@@ -123,36 +164,88 @@ fn elevation_at(per_sine: f64, place: f64) -> f64 {
     high
 }
 
-/// Parts of the light along a row at its distances.
-fn row_of(
-    fog: &RgbFog,
-    table: &RgbFogTable,
-    eye_height_m: f64,
-    ground_m: f64,
+/// Rays of one elevation, and the distances of the tables along them.
+struct RowOfRays {
     sine: f64,
-) -> Option<Vec<RgbFogParts>> {
-    let opacity = |length_m: f64| {
-        let depth = fog.optical_depth(&segment(eye_height_m, sine, length_m));
-        let sum: f64 = depth.iter().map(|&d| -f64::from(-d).exp_m1()).sum();
-        sum / 3.0
-    };
-    let end_m = match sine < 0.0 {
-        true => ground_m / -sine,
-        false => f64::INFINITY,
-    };
-    let whole = opacity(end_m);
-    let mut distances_m = Vec::with_capacity(DISTANCES);
-    let mut from_m = 0.0;
-    for node in 0..DISTANCES {
-        let left = 1.0 - node as f64 / (DISTANCES - 1) as f64;
-        let target = whole * (1.0 - left.powi(4)).max(NEAREST);
-        from_m = match node == DISTANCES - 1 {
-            true => end_m,
-            false => distance_of(&opacity, target, from_m, end_m),
+    distances_m: Vec<f64>,
+    /// Opacity of the fog up to each distance, the mean of the channels.
+    opacities: Vec<f64>,
+}
+
+impl RowOfRays {
+    fn new(fog: &RgbFog, eye_height_m: f64, ground_m: f64, sine: f64) -> Self {
+        let opacity = |length_m: f64| {
+            let depth = fog.optical_depth(&segment(eye_height_m, sine, length_m));
+            let sum: f64 = depth.iter().map(|&d| -f64::from(-d).exp_m1()).sum();
+            sum / 3.0
         };
-        distances_m.push(from_m);
+        let end_m = match sine < 0.0 {
+            true => ground_m / -sine,
+            false => f64::INFINITY,
+        };
+        let whole = opacity(end_m);
+        let mut distances_m = Vec::with_capacity(DISTANCES);
+        let mut from_m = 0.0;
+        for node in 0..DISTANCES {
+            let left = 1.0 - node as f64 / (DISTANCES - 1) as f64;
+            let target = whole * (1.0 - left.powi(4)).max(NEAREST);
+            from_m = match node == DISTANCES - 1 {
+                true => end_m,
+                false => distance_of(&opacity, target, from_m, end_m),
+            };
+            distances_m.push(from_m);
+        }
+        let opacities = distances_m.iter().map(|&m| opacity(m)).collect();
+        Self {
+            sine,
+            distances_m,
+            opacities,
+        }
     }
-    table.parts(sine, &distances_m)
+
+    fn cosine(&self) -> f64 {
+        (1.0 - self.sine * self.sine).max(0.0).sqrt()
+    }
+
+    /// Means over the light that the fog removes up to each distance, of values that start from one at the eye.
+    fn means(&self, at_eye: Vec3, value: impl Fn(f64) -> Vec3) -> Vec<Vec3> {
+        let (mut sum, mut last) = (Vec3::ZERO, (0.0, at_eye));
+        let nodes = self.distances_m.iter().zip(&self.opacities);
+        let mean = |(&distance_m, &opacity): (&f64, &f64)| {
+            let here = value(distance_m);
+            sum += 0.5 * (last.1 + here) * (opacity - last.0) as f32;
+            last = (opacity, here);
+            match opacity > 0.0 {
+                true => sum / opacity as f32,
+                false => at_eye,
+            }
+        };
+        nodes.map(mean).collect()
+    }
+}
+
+/// Means of the air in front of a row over the light that the fog removes up to each distance.
+struct AirBefore {
+    transmittance: Vec<Vec3>,
+    /// By azimuth.
+    path_radiance: Vec<Vec<Vec3>>,
+}
+
+impl AirBefore {
+    fn new(row: &RowOfRays, air: &SkyTables, sun: Vec3) -> Self {
+        let optics = |azimuth: usize, distance_m: f64| {
+            let turn = azimuth as f32 / (AZIMUTHS - 1) as f32;
+            let elevation = (row.sine as f32).asin();
+            let view = SkyView { sun, ..air.view };
+            let direction = direction_from_azimuth_elevation(view, turn, elevation);
+            air.rgb_path(direction, distance_m.min(f64::from(INFINITE_M)) as f32)
+        };
+        let of_azimuth = |azimuth| row.means(Vec3::ZERO, |m| optics(azimuth, m).path_radiance);
+        Self {
+            transmittance: row.means(Vec3::ONE, |m| optics(0, m).transmittance),
+            path_radiance: (0..AZIMUTHS).map(of_azimuth).collect(),
+        }
+    }
 }
 
 /// Distance from `from_m` to `end_m` at which an increasing opacity reaches a target, by doubling and bisection.
@@ -174,16 +267,23 @@ fn distance_of(opacity: &impl Fn(f64) -> f64, target: f64, from_m: f64, end_m: f
 }
 
 /// Diffuse light by azimuth, row and distance, relative to its largest value, which is the scale.
-fn diffuse(nodes: &[Vec<RgbFogParts>], per_sine: [f32; 2], scale: &mut f32) -> Texture {
+fn diffuse(
+    rows: &[RowOfRays],
+    nodes: &[Vec<RgbFogParts>],
+    before: Option<&[AirBefore]>,
+    scale: &mut f32,
+) -> Texture {
     let mut texels = Vec::with_capacity(AZIMUTHS * 2 * ROWS * DISTANCES);
     for distance in 0..DISTANCES {
         for (row, nodes) in nodes.iter().enumerate() {
-            let place = (row % ROWS) as f64 / (ROWS - 1) as f64;
-            let per_sine = f64::from(per_sine[row / ROWS]);
-            let cosine = elevation_at(per_sine, place.max(BESIDE_LEVEL)).cos();
             for azimuth in 0..AZIMUTHS {
                 let turn = PI * azimuth as f64 / (AZIMUTHS - 1) as f64;
-                texels.push(Vec3::from(nodes[distance].diffuse(cosine, turn)).extend(0.0));
+                let fog = Vec3::from(nodes[distance].diffuse(rows[row].cosine(), turn));
+                let light = before.map_or(fog, |air| {
+                    let air = &air[row];
+                    fog * air.transmittance[distance] + air.path_radiance[azimuth][distance]
+                });
+                texels.push(light.extend(0.0));
             }
         }
     }
@@ -203,12 +303,15 @@ fn largest(texels: &[Vec4]) -> f32 {
 }
 
 /// Logarithms of the streams by distance, row and stream, relative to the largest value, by which the scale is multiplied.
-fn streams(nodes: &[Vec<RgbFogParts>], scale: &mut f32) -> Texture {
+fn streams(nodes: &[Vec<RgbFogParts>], before: Option<&[AirBefore]>, scale: &mut f32) -> Texture {
     let mut texels = Vec::with_capacity(DISTANCES * 2 * ROWS * FOG_STREAMS);
     for stream in 0..FOG_STREAMS {
-        for nodes in nodes {
-            let light = nodes.iter().map(|parts| Vec3::from(parts.streams[stream]));
-            texels.extend(light.map(|light| light.extend(0.0)));
+        for (row, nodes) in nodes.iter().enumerate() {
+            for (distance, parts) in nodes.iter().enumerate() {
+                let through = before.map_or(Vec3::ONE, |air| air[row].transmittance[distance]);
+                let light = Vec3::from(parts.streams[stream]) * through;
+                texels.push(light.extend(0.0));
+            }
         }
     }
     let most = largest(&texels);

@@ -45,7 +45,7 @@ pub use cost::{Cost, CostError, costs};
 pub use fog_tables::{FogTables, FogTablesError};
 pub use function::{ErrorBound, Function, functions};
 pub use part::{Part, source, with_required};
-pub use sky_tables::{SkyTables, SkyTablesError};
+pub use sky_tables::{SingleScatteringTable, SkyTables, SkyTablesError};
 #[cfg(feature = "translate")]
 pub use translate::{Language, TranslateError, translate};
 pub use wavelengths::{WAVELENGTHS_NM, wavelength_grid};

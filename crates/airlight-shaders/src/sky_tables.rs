@@ -2,6 +2,7 @@
 
 use crate::colour_fit::ColourFit;
 use crate::twins::colour::{RgbWeights, rgb_from_spectrum};
+use crate::twins::path_optics::PathOptics;
 use crate::twins::sky_tables as twin;
 use crate::twins::texture::{LinearSampler, Texture};
 use crate::wavelengths::WAVELENGTHS_NM;
@@ -125,7 +126,11 @@ impl SkyTables {
     /// Red, green and blue of the sky, or of the ground below the horizon, along a unit vector, without the sun's disc, cd/m^2: what the
     /// shaders compute.
     pub fn rgb_radiance(&self, direction: Vec3) -> Vec3 {
-        let radiance = twin::sky_radiance(
+        rgb_from_spectrum(self.radiance_weights, self.radiance(direction))
+    }
+
+    fn radiance(&self, direction: Vec3) -> Vec4 {
+        twin::sky_radiance(
             self.view,
             self.scales,
             &self.sky_smooth,
@@ -133,8 +138,88 @@ impl SkyTables {
             &self.phase,
             LinearSampler,
             direction,
-        );
-        rgb_from_spectrum(self.radiance_weights, radiance)
+        )
+    }
+
+    /// These tables over ground that receives a part of its light, at the four wavelengths: as below a fog.
+    pub fn over_ground_in_part(mut self, part: Vec4) -> Self {
+        let texels = self.sky_smooth.texels().iter().enumerate();
+        let texels = texels.map(|(index, &texel)| {
+            let (column, row) = (index % SKY_COLUMNS, index / SKY_COLUMNS);
+            if row < SKY_ROWS[0] {
+                return texel;
+            }
+            let uv = [column, row].map(|k| k as f32 + 0.5);
+            let (azimuths, rows) = (
+                twin::SKY_AZIMUTHS,
+                twin::SKY_ROWS_ABOVE + twin::SKY_ROWS_BELOW,
+            );
+            let azimuth = twin::place_from_texel_coordinate(uv[0] / azimuths, azimuths);
+            let elevation = twin::elevation_from_row_coordinate(
+                self.view,
+                uv[1] / rows,
+                twin::SKY_ROWS_ABOVE,
+                twin::SKY_ROWS_BELOW,
+            );
+            let direction = twin::direction_from_azimuth_elevation(self.view, azimuth, elevation);
+            // What is not light of the air is that of the ground behind it.
+            let air = self.path(direction, f32::MAX).path_radiance;
+            let ground = (self.radiance(direction) - air).max(Vec4::ZERO);
+            let scale = self.scales.smooth_light;
+            let light = texel.exp() * scale - (Vec4::ONE - part) * ground;
+            (light / scale).map_lanes(|light| light.ln().max(DARKEST as f32))
+        });
+        self.sky_smooth = Texture::new(self.sky_smooth.size(), texels.collect());
+        self
+    }
+
+    /// Transmittance and path radiance, cd/m^2, of the air between the eye and a point at a distance (m) along a unit vector, in red, green and
+    /// blue: what the shaders compute.
+    pub fn rgb_path(&self, direction: Vec3, distance_m: f32) -> PathOptics {
+        let path = self.path(direction, distance_m);
+        twin::rgb_path(self.radiance_weights, self.transmittance_weights, path)
+    }
+
+    fn path(&self, direction: Vec3, distance_m: f32) -> twin::SpectralPath {
+        twin::aerial_perspective(
+            self.view,
+            self.scales,
+            &self.aerial_smooth,
+            &self.aerial_haze,
+            &self.extinction,
+            &self.phase,
+            LinearSampler,
+            direction,
+            distance_m,
+        )
+    }
+}
+
+/// Source function of the path radiance that the air scatters once, as [`SkyTables::aerial_smooth`] holds that of all light: what is missing
+/// where the sun is hidden. The shader function of aerial perspective reads it in the place of that table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SingleScatteringTable {
+    /// Logarithm of the source function, without the light of [`SkyTables::aerial_haze`], which haze scatters once.
+    pub smooth: Texture,
+    /// Factor from table values to radiance, W m^-2 sr^-1 nm^-1, in the place of [`twin::SkyScales::smooth_light`].
+    pub scale: Vec4,
+}
+
+impl SingleScatteringTable {
+    /// The table of a view of a sky that was solved with [`Scattering::Single`](airlight::sky::Scattering::Single), for the eye and the sun
+    /// of `tables`.
+    pub fn new(split: &SplitView, tables: &SkyTables) -> Self {
+        let eye = Eye {
+            horizon: split.view().horizon_elevation_rad(),
+            highest: f64::from(tables.view.highest_rad),
+            sun: split.view().sun(),
+        };
+        let aerial = aerial(split, &eye, &tables.view);
+        let scale = scale(&aerial.smooth);
+        Self {
+            smooth: logarithms(aerial_size(), &aerial.smooth, scale),
+            scale,
+        }
     }
 }
 

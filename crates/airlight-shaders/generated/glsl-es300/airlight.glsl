@@ -1538,6 +1538,20 @@ float shadow_edge_m(float place, float length_m_13, float optical_depth_1) {
     return (length_m_13 * min(((u_1 < 0.05) ? series_2 : direct_2), 1.0));
 }
 
+// Part of a step that is in sunlight, 0 to 1, between heights above the surface of a shadow (or distances before a shadow caster) at its ends, negative in shadow and linear between: the edge of a shadow is found inside a step.
+// Cost: no exp.
+float lit_part(float from_clearance_m, float to_clearance_m) {
+    float least_3 = min(from_clearance_m, to_clearance_m);
+    float most_1 = max(from_clearance_m, to_clearance_m);
+    if ((least_3 >= 0.0)) {
+        return 1.0;
+    }
+    if ((most_1 <= 0.0)) {
+        return 0.0;
+    }
+    return (most_1 / (most_1 - least_3));
+}
+
 // Light whose sun is visible in part, 0 to 1.
 // Cost: no exp.
 FogLight with_visibility(FogLight light_11, float visibility) {
@@ -2037,7 +2051,7 @@ vec3 article_luminance(ArticleSky sky_1, vec3 view_11, vec3 sun_2) {
     float _e6 = article_distance_m(sky_1.eye, view_11, ARTICLE_TOP_RADIUS_M);
     vec3 leaves_1 = (sky_1.eye + (view_11 * _e6));
     vec3 ds_1 = ((leaves_1 - sky_1.eye) / vec3(8.0));
-    vec3 direction_13 = (ds_1 / vec3(length(ds_1)));
+    vec3 direction_14 = (ds_1 / vec3(length(ds_1)));
     bool loop_init_12 = true;
     while(true) {
         if (!loop_init_12) {
@@ -2055,7 +2069,7 @@ vec3 article_luminance(ArticleSky sky_1, vec3 view_11, vec3 sun_2) {
             vec3 s_2 = (sky_1.eye + ((float(_e26) + 0.5) * ds_1));
             vec3 _e32 = sum_6;
             vec3 _e34 = article_transmittance(sky_1.eye, s_2);
-            vec3 _e35 = article_source(sky_1, s_2, direction_13, sun_2);
+            vec3 _e35 = article_source(sky_1, s_2, direction_14, sun_2);
             sum_6 = (_e32 + (_e34 * _e35));
         }
     }
@@ -2117,6 +2131,33 @@ vec4 sun_disc_radiance(LimbDarkening limb_1, vec4 mean_radiance, float sin_radiu
     return ((mean_radiance * _e14) * _e16);
 }
 
+// Reflection of sunlight at a place on the moon's disc, from unit vectors to the moon, from the moon to the sun and along the view: the law of Lommel and Seeliger, `mu_0 / (mu_0 + mu)` with the cosines of incidence and emission; 1/2 where they are equal, 0 outside the disc and on the night side.
+// Cost: no exp.
+float moon_reflection(vec3 moon, vec3 to_sun_1, float sin_radius_3, vec3 direction_13) {
+    bool local_18 = false;
+    bool local_19 = false;
+    vec3 apart_1 = (direction_13 - moon);
+    vec3 aside = ((apart_1 - (moon * dot(apart_1, moon))) / vec3(sin_radius_3));
+    float emission = sqrt(max((1.0 - dot(aside, aside)), 0.0));
+    float incidence = (dot(aside, to_sun_1) - (emission * dot(moon, to_sun_1)));
+    if (!((emission <= 0.0))) {
+        local_18 = (incidence <= 0.0);
+    } else {
+        local_18 = true;
+    }
+    bool _e28 = local_18;
+    if (!(_e28)) {
+        local_19 = (dot(direction_13, moon) <= 0.0);
+    } else {
+        local_19 = true;
+    }
+    bool _e36 = local_19;
+    if (_e36) {
+        return 0.0;
+    }
+    return (incidence / (incidence + emission));
+}
+
 // No curve: components above 1 and below 0 are clipped.
 // Cost: no exp.
 vec3 clip_tone(vec3 exposed) {
@@ -2137,14 +2178,14 @@ vec3 camera_tone(vec3 exposed_1, float contrast_1, float saturation) {
     vec3 _e3 = without_negatives(exposed_1);
     float _e4 = srgb_luminance(_e3);
     vec3 linear_1 = mix(_e3, vec3(_e4), 0.01);
-    float least_3 = min(linear_1.x, min(linear_1.y, linear_1.z));
-    float most_1 = max(linear_1.x, max(linear_1.y, linear_1.z));
+    float least_4 = min(linear_1.x, min(linear_1.y, linear_1.z));
+    float most_2 = max(linear_1.x, max(linear_1.y, linear_1.z));
     vec3 _e18 = camera_response(linear_1, contrast_1);
     float hi = max(_e18.x, max(_e18.y, _e18.z));
     float dark_1 = (((1.0 - hi) * (1.0 - hi)) * (1.0 - hi));
-    vec3 curved_2 = mix(_e18, (linear_1 * (hi / max(most_1, 1e-30))), dark_1);
+    vec3 curved_2 = mix(_e18, (linear_1 * (hi / max(most_2, 1e-30))), dark_1);
     float lo = min(curved_2.x, min(curved_2.y, curved_2.z));
-    vec3 kept = (vec3(lo) + (((hi - lo) / max((most_1 - least_3), 1e-30)) * (linear_1 - vec3(least_3))));
+    vec3 kept = (vec3(lo) + (((hi - lo) / max((most_2 - least_4), 1e-30)) * (linear_1 - vec3(least_4))));
     vec3 toned = mix(kept, curved_2, 0.2);
     float _e54 = srgb_luminance(toned);
     vec3 _e57 = into_unit_cube(mix(vec3(_e54), toned, saturation));

@@ -1736,6 +1736,21 @@ float shadow_edge_m(float place, float length_m_13, float optical_depth_1)
     return (length_m_13 * min(((u_1 < 0.05) ? series_2 : direct_2), 1.0));
 }
 
+// Part of a step that is in sunlight, 0 to 1, between heights above the surface of a shadow (or distances before a shadow caster) at its ends, negative in shadow and linear between: the edge of a shadow is found inside a step.
+// Cost: no exp.
+float lit_part(float from_clearance_m, float to_clearance_m)
+{
+    float least_3 = min(from_clearance_m, to_clearance_m);
+    float most_1 = max(from_clearance_m, to_clearance_m);
+    if ((least_3 >= 0.0)) {
+        return 1.0;
+    }
+    if ((most_1 <= 0.0)) {
+        return 0.0;
+    }
+    return (most_1 / (most_1 - least_3));
+}
+
 FogLight ConstructFogLight(float3 arg0, float arg1, float3 arg2) {
     FogLight ret = (FogLight)0;
     ret.sunlight = arg0;
@@ -2321,7 +2336,7 @@ float3 article_luminance(ArticleSky sky_1, float3 view_11, float3 sun_2)
     const float _e6 = article_distance_m(sky_1.eye, view_11, ARTICLE_TOP_RADIUS_M);
     float3 leaves_1 = (sky_1.eye + (view_11 * _e6));
     float3 ds_1 = ((leaves_1 - sky_1.eye) / (8.0).xxx);
-    float3 direction_13 = (ds_1 / (length(ds_1)).xxx);
+    float3 direction_14 = (ds_1 / (length(ds_1)).xxx);
     bool loop_init_12 = true;
     while(true) {
         if (!loop_init_12) {
@@ -2339,7 +2354,7 @@ float3 article_luminance(ArticleSky sky_1, float3 view_11, float3 sun_2)
             float3 s_2 = (sky_1.eye + ((float(_e26) + 0.5) * ds_1));
             float3 _e32 = sum_6;
             const float3 _e34 = article_transmittance(sky_1.eye, s_2);
-            const float3 _e35 = article_source(sky_1, s_2, direction_13, sun_2);
+            const float3 _e35 = article_source(sky_1, s_2, direction_14, sun_2);
             sum_6 = (_e32 + (_e34 * _e35));
         }
     }
@@ -2419,6 +2434,35 @@ float4 sun_disc_radiance(LimbDarkening limb_1, float4 mean_radiance, float sin_r
     return ((mean_radiance * _e14) * _e16);
 }
 
+// Reflection of sunlight at a place on the moon's disc, from unit vectors to the moon, from the moon to the sun and along the view: the law of Lommel and Seeliger, `mu_0 / (mu_0 + mu)` with the cosines of incidence and emission; 1/2 where they are equal, 0 outside the disc and on the night side.
+// Cost: no exp.
+float moon_reflection(float3 moon, float3 to_sun_1, float sin_radius_3, float3 direction_13)
+{
+    bool local_18 = (bool)0;
+    bool local_19 = (bool)0;
+
+    float3 apart_1 = (direction_13 - moon);
+    float3 aside = ((apart_1 - (moon * dot(apart_1, moon))) / (sin_radius_3).xxx);
+    float emission = sqrt(max((1.0 - dot(aside, aside)), 0.0));
+    float incidence = (dot(aside, to_sun_1) - (emission * dot(moon, to_sun_1)));
+    if (!((emission <= 0.0))) {
+        local_18 = (incidence <= 0.0);
+    } else {
+        local_18 = true;
+    }
+    bool _e28 = local_18;
+    if (!(_e28)) {
+        local_19 = (dot(direction_13, moon) <= 0.0);
+    } else {
+        local_19 = true;
+    }
+    bool _e36 = local_19;
+    if (_e36) {
+        return 0.0;
+    }
+    return (incidence / (incidence + emission));
+}
+
 // No curve: components above 1 and below 0 are clipped.
 // Cost: no exp.
 float3 clip_tone(float3 exposed)
@@ -2442,14 +2486,14 @@ float3 camera_tone(float3 exposed_1, float contrast_1, float saturation)
     const float3 _e3 = without_negatives(exposed_1);
     const float _e4 = srgb_luminance(_e3);
     float3 linear_1 = lerp(_e3, (_e4).xxx, 0.01);
-    float least_3 = min(linear_1.x, min(linear_1.y, linear_1.z));
-    float most_1 = max(linear_1.x, max(linear_1.y, linear_1.z));
+    float least_4 = min(linear_1.x, min(linear_1.y, linear_1.z));
+    float most_2 = max(linear_1.x, max(linear_1.y, linear_1.z));
     const float3 _e18 = camera_response(linear_1, contrast_1);
     float hi = max(_e18.x, max(_e18.y, _e18.z));
     float dark_1 = (((1.0 - hi) * (1.0 - hi)) * (1.0 - hi));
-    float3 curved_2 = lerp(_e18, (linear_1 * (hi / max(most_1, 1e-30))), dark_1);
+    float3 curved_2 = lerp(_e18, (linear_1 * (hi / max(most_2, 1e-30))), dark_1);
     float lo = min(curved_2.x, min(curved_2.y, curved_2.z));
-    float3 kept = ((lo).xxx + (((hi - lo) / max((most_1 - least_3), 1e-30)) * (linear_1 - (least_3).xxx)));
+    float3 kept = ((lo).xxx + (((hi - lo) / max((most_2 - least_4), 1e-30)) * (linear_1 - (least_4).xxx)));
     float3 toned = lerp(kept, curved_2, 0.2);
     const float _e54 = srgb_luminance(toned);
     const float3 _e57 = into_unit_cube(lerp((_e54).xxx, toned, saturation));

@@ -1817,6 +1817,23 @@ float shadow_edge_m(
     return length_m_13 * metal::min((u_1 < 0.05) ? series_2 : direct_2, 1.0);
 }
 
+// Part of a step that is in sunlight, 0 to 1, between heights above the surface of a shadow (or distances before a shadow caster) at its ends, negative in shadow and linear between: the edge of a shadow is found inside a step.
+// Cost: no exp.
+float lit_part(
+    float from_clearance_m,
+    float to_clearance_m
+) {
+    float least_3 = metal::min(from_clearance_m, to_clearance_m);
+    float most_1 = metal::max(from_clearance_m, to_clearance_m);
+    if (least_3 >= 0.0) {
+        return 1.0;
+    }
+    if (most_1 <= 0.0) {
+        return 0.0;
+    }
+    return most_1 / (most_1 - least_3);
+}
+
 // Light whose sun is visible in part, 0 to 1.
 // Cost: no exp.
 FogLight with_visibility(
@@ -2488,7 +2505,7 @@ metal::float3 article_luminance(
     float _e6 = article_distance_m(sky_1.eye, view_11, ARTICLE_TOP_RADIUS_M);
     metal::float3 leaves_1 = sky_1.eye + (view_11 * _e6);
     metal::float3 ds_1 = (leaves_1 - sky_1.eye) / metal::float3(8.0);
-    metal::float3 direction_13 = ds_1 / metal::float3(metal::length(ds_1));
+    metal::float3 direction_14 = ds_1 / metal::float3(metal::length(ds_1));
     bool loop_init_12 = true;
     while(true) {
         if (!loop_init_12) {
@@ -2506,7 +2523,7 @@ metal::float3 article_luminance(
             metal::float3 s_2 = sky_1.eye + ((static_cast<float>(_e26) + 0.5) * ds_1);
             metal::float3 _e32 = sum_6;
             metal::float3 _e34 = article_transmittance(sky_1.eye, s_2);
-            metal::float3 _e35 = article_source(sky_1, s_2, direction_13, sun_2);
+            metal::float3 _e35 = article_source(sky_1, s_2, direction_14, sun_2);
             sum_6 = _e32 + (_e34 * _e35);
         }
     }
@@ -2590,6 +2607,38 @@ metal::float4 sun_disc_radiance(
     return (mean_radiance * _e14) * _e16;
 }
 
+// Reflection of sunlight at a place on the moon's disc, from unit vectors to the moon, from the moon to the sun and along the view: the law of Lommel and Seeliger, `mu_0 / (mu_0 + mu)` with the cosines of incidence and emission; 1/2 where they are equal, 0 outside the disc and on the night side.
+// Cost: no exp.
+float moon_reflection(
+    metal::float3 moon,
+    metal::float3 to_sun_1,
+    float sin_radius_3,
+    metal::float3 direction_13
+) {
+    bool local_18 = {};
+    bool local_19 = {};
+    metal::float3 apart_1 = direction_13 - moon;
+    metal::float3 aside = (apart_1 - (moon * metal::dot(apart_1, moon))) / metal::float3(sin_radius_3);
+    float emission = metal::sqrt(metal::max(1.0 - metal::dot(aside, aside), 0.0));
+    float incidence = metal::dot(aside, to_sun_1) - (emission * metal::dot(moon, to_sun_1));
+    if (!((emission <= 0.0))) {
+        local_18 = incidence <= 0.0;
+    } else {
+        local_18 = true;
+    }
+    bool _e28 = local_18;
+    if (!(_e28)) {
+        local_19 = metal::dot(direction_13, moon) <= 0.0;
+    } else {
+        local_19 = true;
+    }
+    bool _e36 = local_19;
+    if (_e36) {
+        return 0.0;
+    }
+    return incidence / (incidence + emission);
+}
+
 // No curve: components above 1 and below 0 are clipped.
 // Cost: no exp.
 metal::float3 clip_tone(
@@ -2619,14 +2668,14 @@ metal::float3 camera_tone(
     metal::float3 _e3 = without_negatives(exposed_1);
     float _e4 = srgb_luminance(_e3);
     metal::float3 linear_1 = metal::mix(_e3, metal::float3(_e4), 0.01);
-    float least_3 = metal::min(linear_1.x, metal::min(linear_1.y, linear_1.z));
-    float most_1 = metal::max(linear_1.x, metal::max(linear_1.y, linear_1.z));
+    float least_4 = metal::min(linear_1.x, metal::min(linear_1.y, linear_1.z));
+    float most_2 = metal::max(linear_1.x, metal::max(linear_1.y, linear_1.z));
     metal::float3 _e18 = camera_response(linear_1, contrast_1);
     float hi = metal::max(_e18.x, metal::max(_e18.y, _e18.z));
     float dark_1 = ((1.0 - hi) * (1.0 - hi)) * (1.0 - hi);
-    metal::float3 curved_2 = metal::mix(_e18, linear_1 * (hi / metal::max(most_1, 0.000000000000000000000000000001)), dark_1);
+    metal::float3 curved_2 = metal::mix(_e18, linear_1 * (hi / metal::max(most_2, 0.000000000000000000000000000001)), dark_1);
     float lo = metal::min(curved_2.x, metal::min(curved_2.y, curved_2.z));
-    metal::float3 kept = metal::float3(lo) + (((hi - lo) / metal::max(most_1 - least_3, 0.000000000000000000000000000001)) * (linear_1 - metal::float3(least_3)));
+    metal::float3 kept = metal::float3(lo) + (((hi - lo) / metal::max(most_2 - least_4, 0.000000000000000000000000000001)) * (linear_1 - metal::float3(least_4)));
     metal::float3 toned = metal::mix(kept, curved_2, 0.2);
     float _e54 = srgb_luminance(toned);
     metal::float3 _e57 = into_unit_cube(metal::mix(metal::float3(_e54), toned, saturation));

@@ -1,6 +1,6 @@
-//! The sun's disc: `wgsl/disc.wgsl`.
+//! The discs of sun and moon: `wgsl/disc.wgsl`.
 
-use glam::Vec4;
+use glam::{Vec3, Vec4};
 
 /// Limb darkening at four wavelengths: a polynomial in the cosine `mu` whose mean over the disc is 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,4 +73,16 @@ pub fn sun_disc_radiance(
     let place = place_on_disc(sin_radius, one_minus_cos);
     let mu = ((1.0 - place) * (1.0 + place)).max(0.0).sqrt();
     mean_radiance * limb_profile(limb, mu) * disc_coverage(place, sin_radius, sin_pixel)
+}
+
+/// Reflection of sunlight at a place on the moon's disc, by the law of Lommel and Seeliger.
+pub fn moon_reflection(moon: Vec3, to_sun: Vec3, sin_radius: f32, direction: Vec3) -> f32 {
+    let apart = direction - moon;
+    let aside = (apart - moon * apart.dot(moon)) / sin_radius;
+    let emission = (1.0 - aside.length_squared()).max(0.0).sqrt();
+    let incidence = aside.dot(to_sun) - emission * moon.dot(to_sun);
+    match emission > 0.0 && incidence > 0.0 && direction.dot(moon) > 0.0 {
+        true => incidence / (incidence + emission),
+        false => 0.0,
+    }
 }

@@ -26,6 +26,17 @@ pub fn shadow_edge_m(place: f32, length_m: f32, optical_depth: f32) -> f32 {
     length_m * if u < 0.05 { series } else { direct }.min(1.0)
 }
 
+/// Part of a step that is in sunlight, 0 to 1, between heights above the surface of a shadow at its ends.
+pub fn lit_part(from_clearance_m: f32, to_clearance_m: f32) -> f32 {
+    let least = from_clearance_m.min(to_clearance_m);
+    let most = from_clearance_m.max(to_clearance_m);
+    match (least >= 0.0, most <= 0.0) {
+        (true, _) => 1.0,
+        (_, true) => 0.0,
+        _ => most / (most - least),
+    }
+}
+
 /// Light whose sun is visible in part.
 pub fn with_visibility(light: FogLight, visibility: f32) -> FogLight {
     FogLight {

@@ -1,13 +1,15 @@
-//! Colour, tone curves, dither, the sun's disc.
+//! Colour, tone curves, dither, the discs of sun and moon.
 
 use super::sky_tables::weighted;
 use super::{Row, rows};
 use crate::flat::flat_struct;
 use crate::random::Random;
+use airlight::night::MoonState;
 use airlight::spectrum::{RgbSpace, rgb};
 use airlight::sun::SunDisc;
 use airlight_image::tone::{AgxSettings, CameraSettings, ToneCurve, ToneMapper};
 use airlight_shaders::twins;
+use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
@@ -274,8 +276,45 @@ fn coverage(place: f64, sin_radius: f64, sin_pixel: f64) -> f64 {
     ((1.0 - place) * sin_radius / sin_pixel + 0.5).clamp(0.0, 1.0)
 }
 
+/// Directions to the moon and from it to the sun, the sine of its radius, and a direction on the disc or beside it, not at the very edge.
+fn beside_moon(r: &mut Random) -> Vec<f32> {
+    let moon = Vec3::from(r.direction()).as_dvec3().normalize();
+    let to_sun = match r.unit() < 0.2 {
+        // Full.
+        true => -moon,
+        false => Vec3::from(r.direction()).as_dvec3(),
+    };
+    let radius = sin_radius(r);
+    let place = r.or(&[0.0, 0.5, 0.97, 1.03, 1.5], |r| r.between(0.0, 0.98));
+    let sine = f64::from(place * radius).min(1.0);
+    let (sin, cos) = f64::from(r.between(0.0, 6.3)).sin_cos();
+    let across = moon.any_orthonormal_vector();
+    let aside = across * cos + moon.cross(across) * sin;
+    let direction = moon * (1.0 - sine * sine).sqrt() + aside * sine;
+    let [moon, to_sun, direction] = [moon, to_sun, direction].map(|v| v.as_vec3().to_array());
+    [&moon[..], &to_sun, &[radius], &direction].concat()
+}
+
+/// The library's law, relative to what it is where sun and eye are equally high, which is one half.
+fn exact_moon_reflection(x: &[f64]) -> f64 {
+    /// Radius of the moon, m.
+    const RADIUS_M: f64 = 1_737_400.0;
+    let [direction, to_sun, along] = [0, 3, 7].map(|k| DVec3::from_slice(&x[k..k + 3]).normalize());
+    let mut moon = MoonState::lit_by(direction, to_sun);
+    moon.distance_m = RADIUS_M / x[6];
+    let Some(normal) = (to_sun - direction).try_normalize() else {
+        // New.
+        return 0.0;
+    };
+    let aside = normal - direction * normal.dot(direction);
+    let at_half =
+        (direction * (1.0 - (x[6] * aside).length_squared()).sqrt() + aside * x[6]).normalize();
+    0.5 * moon.relative_radiance(along) / moon.relative_radiance(at_half)
+}
+
 pub fn disc() -> Vec<Row> {
     rows!(twins::disc {
+        moon_reflection: beside_moon => |x| vec![exact_moon_reflection(x)];
         limb_darkening: wavelengths => coefficients;
         limb_profile: |r| {
             let mut all = limb(r);

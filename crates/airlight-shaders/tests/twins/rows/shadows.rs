@@ -52,6 +52,19 @@ pub fn shadows() -> Vec<Row> {
                 false => x[0] * x[1],
             }]
         };
+        lit_part: |r| {
+            let clearance = |r: &mut Random| {
+                let size = r.or(&[0.0, 1.0], |r| r.decades(1e-3, 1e4));
+                r.one_of(&[1.0, -1.0]) * size
+            };
+            vec![clearance(r), clearance(r)]
+        } => |x| {
+            let (least, most) = (x[0].min(x[1]), x[0].max(x[1]));
+            vec![match least >= 0.0 {
+                true => 1.0,
+                false => most.max(0.0) / (most.max(0.0) - least),
+            }]
+        };
         with_visibility: |r| {
             let mut all = light(r);
             all.push(visibility(r));
