@@ -58,7 +58,7 @@ pub enum SkyRendererError {
     /// The height of the eye is not a number.
     #[error("expected a finite height of the eye, got {0} m")]
     Height(f64),
-    /// The direction to the sun has no length.
-    #[error("expected a direction to the sun, got {0}")]
+    /// The direction to the sun, or to the moon, has no length.
+    #[error("expected a direction to the sun or the moon, got {0}")]
     Sun(airlight::glam::DVec3),
 }

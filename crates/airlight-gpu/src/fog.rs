@@ -1,21 +1,21 @@
 //! [`Fog`], and its tables on the device.
 
 use crate::error::SkyRendererError;
-use crate::gpu_tables::{self, FLAT, SOLID};
-use crate::lighting::Lighting;
+use crate::gpu_tables::{self, FLAT, SOLID, Tables};
+use crate::lighting::DirectLight;
 use airlight::atmosphere::DensityProfile;
 use airlight::fog::droplets::Droplets;
 use airlight::fog::visibility::{self, Contrast};
 use airlight::fog::{DirectionalLight, FogLighting, FogScattering, Ground, RgbFog, RgbLayer};
-use airlight_shaders::FogTables;
 use airlight_shaders::twins::columns::{INFINITE_M, ray_segment};
 use airlight_shaders::twins::exponentials::OPAQUE;
 use airlight_shaders::twins::fog::{
     FOG_CLAMPED, FOG_EXPONENTIAL, FOG_SLAB, FogLayer, FogMedium, fog_layer_column_m,
 };
-use airlight_shaders::twins::fog_table::tabulated_fog;
+use airlight_shaders::twins::fog_table::{FogTableView, tabulated_fog};
 use airlight_shaders::twins::lights::ExponentialFog;
 use airlight_shaders::twins::texture::LinearSampler;
+use airlight_shaders::{FogTables, SkyTables};
 use glam::Vec3;
 use std::f32::consts::PI;
 
@@ -71,27 +71,52 @@ impl Fog {
         Ok(RgbFog::new(layers, ground, lighting, scattering)?)
     }
 
-    /// The fog in the light of sun and sky.
-    pub(crate) fn lit(&self, lighting: &Lighting) -> Result<RgbFog, SkyRendererError> {
-        let sun = (lighting.sun.y > 0.0).then(|| DirectionalLight {
-            direction: lighting.sun.as_dvec3().normalize(),
-            irradiance: lighting.sun_illuminance_lx.max(Vec3::ZERO).to_array(),
+    /// Height above which 1 % of the fog's vertical optical depth lies, m: sun and sky light the fog as they do there.
+    pub(crate) fn top_m(&self) -> f64 {
+        const ABOVE: f64 = 0.01;
+        let above = |height_m: f64| self.layer.density.column_above_m(height_m);
+        let whole = above(self.ground_height_m);
+        let (mut low, mut high) = (self.ground_height_m, self.ground_height_m + 1e5);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            match above(middle) > ABOVE * whole {
+                true => low = middle,
+                false => high = middle,
+            }
+        }
+        high
+    }
+
+    /// The fog in the light of sun and sky at its top.
+    pub(crate) fn lit(
+        &self,
+        at_top: &DirectLight,
+        sky_illuminance_lx: Vec3,
+    ) -> Result<RgbFog, SkyRendererError> {
+        let sun = (at_top.direction.y > 0.0).then(|| DirectionalLight {
+            direction: at_top.direction.as_dvec3().normalize(),
+            irradiance: at_top.illuminance_lx.max(Vec3::ZERO).to_array(),
         });
         let lighting = FogLighting {
             sun,
-            ambient: (lighting.sky_illuminance_lx(Vec3::Y) / PI).to_array(),
+            ambient: (sky_illuminance_lx.max(Vec3::ZERO) / PI).to_array(),
             ground_albedo: self.ground_albedo,
         };
         self.under(&lighting, FogScattering::Multiple)
     }
 
-    /// The tables of the lit fog for an eye at a height above sea level, m.
+    /// The tables of the lit fog in air, for an eye at a height above sea level, m.
     pub(crate) fn tables(
         &self,
         height_m: f64,
         lit: &RgbFog,
+        air: &SkyTables,
     ) -> Result<FogTables, SkyRendererError> {
-        Ok(FogTables::new(lit, height_m.max(self.ground_height_m))?)
+        Ok(FogTables::in_air(
+            lit,
+            height_m.max(self.ground_height_m),
+            air,
+        )?)
     }
 
     /// The fog of a frame, for an eye at a height above sea level, m.
@@ -180,20 +205,25 @@ impl FogFrame {
         path.transmittance * behind + path.path_radiance
     }
 
-    /// Uploads the tables.
+    /// Uploads the tables: for all light of the fog, and for the sunlight that it scatters once.
     pub(crate) fn upload(
         &self,
         device: (&wgpu::Device, &wgpu::Queue),
         layout: &wgpu::BindGroupLayout,
-    ) -> wgpu::BindGroup {
+    ) -> [wgpu::BindGroup; 2] {
         let tables = &self.tables;
         let textures = [&tables.diffuse, &tables.streams, &tables.stream_phase];
-        gpu_tables::group(device, layout, &self.numbers(), &textures)
+        let textures = Tables::new(device, &textures);
+        let once = FogTableView {
+            diffuse_scale: 0.0,
+            ..tables.view
+        };
+        [tables.view, once].map(|view| textures.group(device.0, layout, &self.numbers(&view)))
     }
 
     /// The numbers of the shader's struct `Fog`.
-    fn numbers(&self) -> Vec<f32> {
-        let (view, layer) = (&self.tables.view, &self.layer);
+    fn numbers(&self, view: &FogTableView) -> Vec<f32> {
+        let layer = &self.layer;
         let mut all = view.sun.to_array().to_vec();
         all.push(view.below_per_sine);
         all.extend(view.depth_below.to_array());

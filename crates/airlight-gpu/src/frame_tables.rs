@@ -1,43 +1,54 @@
 //! [`SkySolver`] and [`FrameTables`]: what frames are drawn with, computed without a device.
 
+use crate::disc::DiscTable;
 use crate::error::SkyRendererError;
 use crate::fog::{Fog, FogFrame};
-use crate::lighting::Lighting;
+use crate::lighting::{DirectLight, Lighting};
 use airlight::atmosphere::Atmosphere;
+use airlight::fog::RgbFog;
 use airlight::glam::DVec3;
-use airlight::sky::{Sky, SkySettings, View};
+use airlight::sky::{LightSource, Scattering, Sky, SkySettings, TableChannels};
 use airlight::spectrum::RgbSpace;
-use airlight::sun::SunState;
-use airlight_shaders::twins::texture::Texture;
-use airlight_shaders::{ColourFit, SkyTables, WAVELENGTHS_NM, wavelength_grid};
+use airlight_shaders::twins::colour::rgb_from_spectrum;
+use airlight_shaders::{ColourFit, SingleScatteringTable, SkyTables, wavelength_grid};
 use glam::{Vec3, Vec4};
+use std::f32::consts::PI;
 use std::sync::Arc;
-
-/// Texels of the table of the sun's disc.
-const DISC_TEXELS: usize = 64;
 
 /// A solved sky that fills the tables of frames. It needs no device, so that a thread or a worker of a web page can hold it. Cloning is
 /// cheap.
 #[derive(Clone, Debug)]
 pub struct SkySolver {
     sky: Sky,
+    /// The sky without light that is scattered more than once, for shadows.
+    single: Option<Sky>,
+    settings: SkySettings,
     fit: Arc<ColourFit>,
     space: RgbSpace,
 }
 
-/// Tables of a frame for one eye and one sun: plain data, which [`SkyPasses`](crate::SkyPasses) uploads.
+/// Tables of a frame for one eye: plain data, which [`SkyPasses`](crate::SkyPasses) uploads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameTables {
+    /// Light of the sun.
+    pub first: SourceTables,
+    /// Light of a second source, such as the moon, which is added to that of the first.
+    pub second: Option<SourceTables>,
+    /// Light of both on surfaces at the eye.
+    pub lighting: Lighting,
+}
+
+/// Tables of the light of one source.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SourceTables {
     /// Sky and aerial perspective.
     pub sky: SkyTables,
-    /// Radiance of the sun's disc outside the air, W m^-2 sr^-1 nm^-1, by the cosine at the sun's surface, 0 at the limb.
-    pub disc: Texture,
-    /// 1 minus the cosine of the angular radius of the sun's disc.
-    pub disc_one_minus_cos: f32,
+    /// The disc of the source.
+    pub disc: DiscTable,
+    /// Light that the air scatters once, for shadows in it.
+    pub single: Option<SingleScatteringTable>,
     /// Fog, with the light of this sky.
     pub fog: Option<FogFrame>,
-    /// Light on surfaces at the eye.
-    pub lighting: Lighting,
 }
 
 impl SkySolver {
@@ -52,12 +63,31 @@ impl SkySolver {
     ) -> Result<Self, SkyRendererError> {
         Ok(Self {
             sky: Sky::prepare(atmosphere, &wavelength_grid(), settings)?,
+            single: None,
+            settings: settings.clone(),
             fit: Arc::new(ColourFit::new(atmosphere, settings.suns)?),
             space,
         })
     }
 
-    /// Tables for an eye at a height above sea level, m, a sun, by its direction or with its distance, and a fog.
+    /// This solver, whose tables hold what shadows in the air need, too.
+    ///
+    /// # Errors
+    /// [`SkyRendererError::Sky`] if the sky cannot be solved.
+    pub fn with_shadows(self) -> Result<Self, SkyRendererError> {
+        let settings = SkySettings {
+            scattering: Scattering::Single,
+            ..self.settings.clone()
+        };
+        let single = Sky::prepare(self.sky.atmosphere(), &wavelength_grid(), &settings)?;
+        Ok(Self {
+            single: Some(single),
+            ..self
+        })
+    }
+
+    /// Tables for an eye at a height above sea level, m, a source of light, and a fog. The source is the sun, by its direction or with its
+    /// distance, or the moon.
     ///
     /// # Errors
     /// [`SkyRendererError`] for numbers that are no place or direction, for an invalid fog, and for a place that the sky is not
@@ -65,35 +95,95 @@ impl SkySolver {
     pub fn tables(
         &self,
         height_m: f64,
-        sun: impl Into<SunState>,
+        source: impl Into<LightSource>,
         fog: Option<&Fog>,
     ) -> Result<FrameTables, SkyRendererError> {
-        let sun = sun.into();
-        let (height_m, direction) = checked(height_m, sun.direction)?;
-        let sun = SunState { direction, ..sun };
+        let (first, lighting) = self.lit_by(height_m, source.into(), fog)?;
+        Ok(FrameTables {
+            first,
+            second: None,
+            lighting,
+        })
+    }
+
+    /// As [`SkySolver::tables`], under two sources, such as sun and moon: the brighter one first, whose light gives geometry its colours
+    /// behind air.
+    ///
+    /// # Errors
+    /// As [`SkySolver::tables`].
+    pub fn tables_under_two(
+        &self,
+        height_m: f64,
+        sources: [LightSource; 2],
+        fog: Option<&Fog>,
+    ) -> Result<FrameTables, SkyRendererError> {
+        let [first, second] = sources.map(|source| self.lit_by(height_m, source, fog));
+        let ((first, lighting), (second, more)) = (first?, second?);
+        Ok(FrameTables {
+            first,
+            second: Some(second),
+            lighting: lighting.with(&more),
+        })
+    }
+
+    /// Tables of the light of a source, and its light at the eye.
+    fn lit_by(
+        &self,
+        height_m: f64,
+        source: LightSource,
+        fog: Option<&Fog>,
+    ) -> Result<(SourceTables, Lighting), SkyRendererError> {
+        check(height_m, &source)?;
         fog.map_or(Ok(()), Fog::validate)?;
-        let view = self.sky.try_view(height_m, sun)?;
+        let view = self.sky.try_view(height_m, source)?;
         let split = view.split();
-        let sky = SkyTables::of(&split, &self.fit, self.space)?;
+        let mut sky = SkyTables::of(&split, &self.fit, self.space)?;
         let direct = self.fit.sun_illuminance_lx(&view, self.space)?;
         let lighting = Lighting::new(split.table(), &sky, direct);
         let (fog, lighting) = match fog {
             Some(fog) => {
-                let lit = fog.lit(&lighting)?;
-                let tables = fog.tables(height_m, &lit)?;
+                let lit = self.lit_fog(fog, source, &sky)?;
+                sky = sky.over_ground_in_part(ground_share(&lit));
+                let tables = fog.tables(height_m, &lit, &sky)?;
                 let in_fog = lighting.in_fog(&lit, height_m, |d| sky.rgb_radiance(d));
                 (Some(fog.frame(tables, height_m)), in_fog)
             }
             None => (None, lighting),
         };
-        let half_sine = (0.5 * view.disc().angular_radius_rad).sin();
-        Ok(FrameTables {
+        let single = match &self.single {
+            Some(single) => {
+                let view = single.try_view(height_m, source)?;
+                Some(SingleScatteringTable::new(&view.split(), &sky))
+            }
+            None => None,
+        };
+        let tables = SourceTables {
             sky,
-            disc: disc(&view),
-            disc_one_minus_cos: (2.0 * half_sine * half_sine) as f32,
+            disc: DiscTable::new(&view),
+            single,
             fog,
-            lighting,
-        })
+        };
+        Ok((tables, lighting))
+    }
+
+    /// A fog in the light of a source and its sky at the fog's top, in the colours of `tables`.
+    fn lit_fog(
+        &self,
+        fog: &Fog,
+        source: LightSource,
+        tables: &SkyTables,
+    ) -> Result<RgbFog, SkyRendererError> {
+        let top = self.sky.try_view(fog.top_m(), source)?;
+        let direct = self.fit.sun_illuminance_lx(&top, self.space)?;
+        let sky = top.table(TableChannels::Spectral).irradiance(DVec3::Y);
+        let at_top = DirectLight {
+            direction: tables.view.sun,
+            illuminance_lx: Vec3::from_array(direct.map(|v| v as f32)),
+        };
+        fog.lit(
+            &at_top,
+            rgb_from_spectrum(tables.radiance_weights, Vec4::from_slice(&sky)),
+        )
     }
 
     /// The solved sky.
@@ -103,8 +193,17 @@ impl SkySolver {
 }
 
 impl FrameTables {
-    /// Red, green and blue along a unit vector without geometry and without the sun's disc, cd/m^2: what the passes draw.
+    /// Red, green and blue along a unit vector without geometry and without the discs, cd/m^2: what the passes draw.
     pub fn rgb_radiance(&self, direction: Vec3) -> Vec3 {
+        let sources = [Some(&self.first), self.second.as_ref()];
+        let each = sources.into_iter().flatten();
+        each.map(|source| source.rgb_radiance(direction)).sum()
+    }
+}
+
+impl SourceTables {
+    /// As [`FrameTables::rgb_radiance`], of this source.
+    fn rgb_radiance(&self, direction: Vec3) -> Vec3 {
         let behind = self.sky.rgb_radiance(direction);
         match &self.fog {
             Some(fog) => fog.in_front_of(behind, direction),
@@ -113,27 +212,32 @@ impl FrameTables {
     }
 }
 
-/// A height that is a number, and a unit vector towards the sun.
-pub(crate) fn checked(height_m: f64, sun: DVec3) -> Result<(f64, DVec3), SkyRendererError> {
+/// Irradiance of the ground below a fog relative to that without the fog, at the four wavelengths, of which those of red, green and blue are
+/// the fourth, the third and the first.
+fn ground_share(fog: &RgbFog) -> Vec4 {
+    let light = fog.lighting();
+    let sun = light.sun.map_or(Vec3::ZERO, |sun| {
+        Vec3::from_array(sun.irradiance) * sun.direction.y.max(0.0) as f32
+    });
+    let without = sun + PI * Vec3::from_array(light.ambient);
+    let [red, green, blue] = match fog.ground_irradiance() {
+        Some(through) => std::array::from_fn(|c| match without[c] > 0.0 {
+            true => through[c] / without[c],
+            false => 1.0,
+        }),
+        None => [1.0; 3],
+    };
+    Vec4::new(blue, 0.5 * (blue + green), green, red)
+}
+
+/// Refuses a height that is not a number, and a source without a direction.
+pub(crate) fn check(height_m: f64, source: &LightSource) -> Result<(), SkyRendererError> {
     if !height_m.is_finite() {
         return Err(SkyRendererError::Height(height_m));
     }
-    let sun = sun.try_normalize().ok_or(SkyRendererError::Sun(sun))?;
-    Ok((height_m, sun))
-}
-
-/// The table of the sun's disc.
-fn disc(view: &View) -> Texture {
-    let solar = view.solar_irradiance();
-    let disc = view.disc();
-    let texels = (0..DISC_TEXELS).map(|k| {
-        let mu = k as f64 / (DISC_TEXELS - 1) as f64;
-        // The edge itself is outside the disc.
-        let angle = disc.angular_radius_rad * (1.0 - mu * mu).sqrt().min(1.0 - 1e-9);
-        Vec4::from_array(std::array::from_fn(|lane| {
-            let relative = disc.radiance_per_irradiance(angle, WAVELENGTHS_NM[lane]);
-            solar[lane] * relative as f32
-        }))
-    });
-    Texture::new([DISC_TEXELS, 1, 1], texels.collect())
+    let direction = source.direction();
+    match direction.try_normalize() {
+        Some(_) => Ok(()),
+        None => Err(SkyRendererError::Sun(direction)),
+    }
 }

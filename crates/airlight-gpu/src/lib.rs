@@ -7,11 +7,13 @@
 //! [`SkySolver`] and [`SkyPasses`] are its two halves, for programs that compute on a thread or in a worker of their own. [`TonePass`]
 //! shows a frame on a display.
 //! Nothing is computed again when only the camera turns. [`Lighting`] is the light of sun and sky for the program's own surfaces,
-//! [`EnvironmentMap`] what they reflect. [`TerrainPass`] draws ground of given heights, [`TerrainPoint`] finds what a ray sees of it.
+//! [`EnvironmentMap`] what they reflect. A second source, such as the moon, adds its light to all of these. [`TerrainPass`] draws ground of
+//! given heights, whose [`TerrainShadows`] darken air and fog; [`TerrainPoint`] finds what a ray sees of it.
 //!
 //! The eye is the origin, y is up at the eye, distances are in metres, light is in cd/m^2 times an exposure.
 
 mod camera;
+mod disc;
 mod environment;
 mod error;
 mod fog;
@@ -26,22 +28,25 @@ mod passes;
 #[cfg(not(target_arch = "wasm32"))]
 mod read;
 mod renderer;
+mod shadows;
 mod sky;
 mod terrain;
 mod terrain_point;
 mod tone;
 
 pub use camera::{Camera, Projection};
+pub use disc::DiscTable;
 pub use environment::EnvironmentMap;
 pub use error::SkyRendererError;
 pub use fog::{Fog, FogFrame};
-pub use frame_tables::{FrameTables, SkySolver};
-pub use lighting::Lighting;
+pub use frame_tables::{FrameTables, SkySolver, SourceTables};
+pub use lighting::{DirectLight, Lighting};
 pub use lights::MOST_LIGHTS;
 pub use passes::SkyPasses;
 #[cfg(not(target_arch = "wasm32"))]
 pub use read::{ReadTextureError, read_rgb, read_texture};
 pub use renderer::{SkyRenderer, SkyRendererSettings, Work};
+pub use shadows::TerrainShadows;
 pub use terrain::{HeightField, TerrainPass, TerrainView};
 pub use terrain_point::TerrainPoint;
 pub use tone::{ToneCurve, TonePass, ToneSettings};

@@ -24,13 +24,24 @@ const AROUND: usize = 10;
 /// what it lets through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lighting {
-    /// Unit vector towards the sun.
+    /// Unit vector towards the sun, or to what is in its place.
     pub sun: Vec3,
     /// Illuminance of a surface that faces the sun by the sun's disc, dimmed by the air, lx; 0 for a sun below the horizon.
     pub sun_illuminance_lx: Vec3,
+    /// The disc of a second source, such as the moon.
+    pub second: Option<DirectLight>,
     /// Illuminance of surfaces by everything else, sky and ground, lx: coefficients of 1, x, y, z, xy, yz, zx, 3 y^2 - 1 and
     /// x^2 - z^2 of the unit normal (x, y, z), y up.
     pub sky_coefficients_lx: [Vec3; 9],
+}
+
+/// Light of a disc in the sky.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DirectLight {
+    /// Unit vector towards it.
+    pub direction: Vec3,
+    /// Illuminance of a surface that faces it, dimmed by the air, lx; 0 below the horizon.
+    pub illuminance_lx: Vec3,
 }
 
 impl Lighting {
@@ -54,7 +65,29 @@ impl Lighting {
         Self {
             sun: tables.view.sun,
             sun_illuminance_lx: Vec3::from_array(sun_illuminance_lx.map(|v| v as f32)),
+            second: None,
             sky_coefficients_lx,
+        }
+    }
+
+    /// The disc of the sun, or of what is in its place.
+    pub fn first(&self) -> DirectLight {
+        DirectLight {
+            direction: self.sun,
+            illuminance_lx: self.sun_illuminance_lx,
+        }
+    }
+
+    /// This light and that of a second source: the light of both skies, and both discs.
+    pub(crate) fn with(&self, more: &Self) -> Self {
+        let coefficients = |k| self.sky_coefficients_lx[k] + more.sky_coefficients_lx[k];
+        Self {
+            second: Some(DirectLight {
+                direction: more.sun,
+                illuminance_lx: more.sun_illuminance_lx,
+            }),
+            sky_coefficients_lx: std::array::from_fn(coefficients),
+            ..*self
         }
     }
 
@@ -98,7 +131,7 @@ impl Lighting {
         }
     }
 
-    /// Illuminance of a surface with this unit normal by everything but the sun's disc, lx. Nowhere negative.
+    /// Illuminance of a surface with this unit normal by everything but the discs of sun and moon, lx. Nowhere negative.
     pub fn sky_illuminance_lx(&self, normal: Vec3) -> Vec3 {
         let terms = self.sky_coefficients_lx.iter().zip(polynomials(normal));
         terms
@@ -192,6 +225,7 @@ mod tests {
             let lighting = Lighting {
                 sun: axes::direction(140.0, sun_deg).as_vec3(),
                 sun_illuminance_lx: Vec3::splat(1e5),
+                second: None,
                 sky_coefficients_lx: [Vec3::ZERO; 9],
             };
             let layer = RgbLayer {

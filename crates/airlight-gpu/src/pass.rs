@@ -157,30 +157,38 @@ impl Pass {
         shader: &str,
         format: wgpu::TextureFormat,
     ) -> Self {
-        let (layout, shader) = parts(device, groups, shader);
+        let (layout, shader) = parts(device, &groups, shader);
         Self {
             dim: blending(device, &layout, &shader, "dim", format),
             add: blending(device, &layout, &shader, "add", format),
         }
     }
 
-    /// Draws over the frame with the tables of the medium; the second group is set.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, tables: &wgpu::BindGroup) {
+    /// Draws over the frame with the tables of the medium, and adds the light of a second source; the second group is set.
+    pub fn draw(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        tables: &wgpu::BindGroup,
+        second: Option<&wgpu::BindGroup>,
+    ) {
         for pipeline in [&self.dim, &self.add] {
             draw(pass, pipeline, tables);
+        }
+        if let Some(tables) = second {
+            draw(pass, &self.add, tables);
         }
     }
 }
 
-/// The pipeline of a shader with [`CORNER`] and the entry point `add` alone, for targets of a format.
-pub fn adding(
+/// The pipeline of a shader with [`CORNER`] and one entry point, `add` or `shade`, for targets of a format.
+pub fn single(
     device: &wgpu::Device,
-    groups: [&wgpu::BindGroupLayout; 2],
-    shader: &str,
+    groups: &[&wgpu::BindGroupLayout],
+    (shader, entry): (&str, &str),
     format: wgpu::TextureFormat,
 ) -> wgpu::RenderPipeline {
     let (layout, shader) = parts(device, groups, shader);
-    blending(device, &layout, &shader, "add", format)
+    blending(device, &layout, &shader, entry, format)
 }
 
 /// Draws over the frame with a first group; the second is set.
@@ -197,12 +205,13 @@ pub fn draw(
 /// Layout and module of pipelines.
 fn parts(
     device: &wgpu::Device,
-    groups: [&wgpu::BindGroupLayout; 2],
+    groups: &[&wgpu::BindGroupLayout],
     shader: &str,
 ) -> (wgpu::PipelineLayout, wgpu::ShaderModule) {
+    let groups: Vec<_> = groups.iter().map(|group| Some(*group)).collect();
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some("airlight"),
-        bind_group_layouts: &groups.map(Some),
+        bind_group_layouts: &groups,
         immediate_size: 0,
     });
     let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -212,7 +221,7 @@ fn parts(
     (layout, shader)
 }
 
-/// A pipeline whose entry point `dim` multiplies the colours of the target, and whose `add` adds to them.
+/// A pipeline whose entry point `dim` multiplies the colours of the target, whose `add` adds to them, and whose `shade` subtracts from them.
 fn blending(
     device: &wgpu::Device,
     layout: &wgpu::PipelineLayout,
@@ -228,6 +237,10 @@ fn blending(
     let (zero, one) = (wgpu::BlendFactor::Zero, wgpu::BlendFactor::One);
     let color = match entry {
         "dim" => component(zero, wgpu::BlendFactor::Src),
+        "shade" => wgpu::BlendComponent {
+            operation: wgpu::BlendOperation::ReverseSubtract,
+            ..component(one, one)
+        },
         _ => component(one, one),
     };
     let blend = wgpu::BlendState {

@@ -4,17 +4,19 @@ use crate::camera::{Camera, Projection};
 use crate::environment::EnvironmentMap;
 use crate::error::SkyRendererError;
 use crate::fog;
-use crate::frame_tables::FrameTables;
+use crate::frame_tables::{FrameTables, SourceTables};
 use crate::gpu_tables::FLAT;
 use crate::lighting::Lighting;
 use crate::lights;
 use crate::pass::{
-    CORNER, Pass, UNIFORM, adding, bind_group, draw, group_layout, texture, uniform,
+    CORNER, Pass, UNIFORM, bind_group, draw, group_layout, single, texture, uniform,
 };
+use crate::shadows::{self, TerrainShadows};
 use crate::sky;
 use airlight::fog::lights::Light;
 use airlight_shaders::twins::lights::{ExponentialFog, LocalLight};
 use airlight_shaders::{Part, source};
+use std::sync::OnceLock;
 
 /// Draws air, sky and sun over frames, with tables that a [`SkySolver`](crate::SkySolver) has filled.
 #[derive(Debug)]
@@ -28,6 +30,10 @@ pub struct SkyPasses {
     sky_pass: Pass,
     fog_pass: Pass,
     light_pass: wgpu::RenderPipeline,
+    /// Of shadows in air and in fog, once there are any.
+    shadow_passes: OnceLock<[wgpu::RenderPipeline; 2]>,
+    target_format: wgpu::TextureFormat,
+    has_discs: bool,
     lights: Vec<LocalLight>,
     drawn: Option<Drawn>,
 }
@@ -35,15 +41,25 @@ pub struct SkyPasses {
 /// What frames are drawn with.
 #[derive(Debug)]
 struct Drawn {
-    sky: wgpu::BindGroup,
+    first: DrawnSource,
+    second: Option<DrawnSource>,
     fog: Option<DrawnFog>,
     lighting: Lighting,
+}
+
+/// Light of a source in air, and in fog if there is any.
+#[derive(Debug)]
+struct DrawnSource {
+    sky: wgpu::BindGroup,
+    /// What the air scatters once.
+    sky_once: Option<wgpu::BindGroup>,
+    /// All light of the fog, and what it scatters once.
+    fog: Option<[wgpu::BindGroup; 2]>,
 }
 
 /// A fog, and the lights in it if there are any.
 #[derive(Debug)]
 struct DrawnFog {
-    tables: wgpu::BindGroup,
     eye_height_m: f32,
     around_lights: Option<ExponentialFog>,
     lights: Option<wgpu::BindGroup>,
@@ -74,12 +90,15 @@ impl SkyPasses {
         Ok(Self {
             sky_pass: pass(&sky_layout, &sky_shader()),
             fog_pass: pass(&fog_layout, &fog_shader()),
-            light_pass: adding(
+            light_pass: single(
                 device,
-                [&light_layout, &frame_layout],
-                &light_shader(),
+                &[&light_layout, &frame_layout],
+                (&light_shader(), "add"),
                 target_format,
             ),
+            shadow_passes: OnceLock::new(),
+            target_format,
+            has_discs: true,
             device: device.clone(),
             queue: queue.clone(),
             sky_layout,
@@ -93,11 +112,10 @@ impl SkyPasses {
 
     /// Uploads tables, with which frames are drawn from now on.
     pub fn set_tables(&mut self, tables: &FrameTables) {
-        let device = (&self.device, &self.queue);
         self.drawn = Some(Drawn {
-            sky: sky::upload(device, &self.sky_layout, tables),
-            fog: tables.fog.as_ref().map(|fog| DrawnFog {
-                tables: fog.upload(device, &self.fog_layout),
+            first: self.upload(&tables.first),
+            second: tables.second.as_ref().map(|second| self.upload(second)),
+            fog: tables.first.fog.as_ref().map(|fog| DrawnFog {
                 eye_height_m: fog.eye_height_m,
                 around_lights: fog.around_lights,
                 lights: None,
@@ -105,6 +123,23 @@ impl SkyPasses {
             lighting: tables.lighting,
         });
         self.upload_lights();
+    }
+
+    fn upload(&self, source: &SourceTables) -> DrawnSource {
+        let device = (&self.device, &self.queue);
+        let fog = source.fog.as_ref();
+        let (sky, sky_once) = sky::upload(device, &self.sky_layout, source);
+        DrawnSource {
+            sky,
+            sky_once,
+            fog: fog.map(|fog| fog.upload(device, &self.fog_layout)),
+        }
+    }
+
+    /// Sets whether frames show the discs of sun and moon, as they do at first. Of several planets in one frame only the passes of the farthest one
+    /// should: nearer planets then hide and dim the discs as they do the rest of the frame.
+    pub fn set_discs(&mut self, has_discs: bool) {
+        self.has_discs = has_discs;
     }
 
     /// Sets the lights that shine in the fog from now on, at most [`MOST_LIGHTS`](crate::MOST_LIGHTS), instead of those before. Their
@@ -146,17 +181,58 @@ impl SkyPasses {
         depth: &wgpu::TextureView,
         camera: &Camera,
     ) {
+        self.record_shadowed(encoder, target, depth, camera, None);
+    }
+
+    /// As [`SkyPasses::record`], with the shadows of ground in air and fog: without the sunlight that these would scatter once where the
+    /// ground hides the sun. Light that is scattered more often, and that of a second source, have no shadows. Tables of a solver without
+    /// [`SkySolver::with_shadows`](crate::SkySolver::with_shadows) have no shadows in air.
+    pub fn record_shadowed(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+        depth: &wgpu::TextureView,
+        camera: &Camera,
+        shadows: Option<&TerrainShadows>,
+    ) {
         if let Some(drawn) = &self.drawn {
-            let passes = [&self.sky_pass, &self.fog_pass];
+            let passes = Passes {
+                sky: &self.sky_pass,
+                fog: &self.fog_pass,
+                lights: Some(&self.light_pass),
+                shadows: shadows.map(|shadows| (self.shadow_passes(), shadows)),
+            };
             self.draw(
                 drawn,
-                (passes, Some(&self.light_pass)),
+                &passes,
                 encoder,
                 (target, wgpu::LoadOp::Load),
                 depth,
-                &camera.numbers(),
+                &match self.has_discs {
+                    true => camera.numbers(),
+                    false => camera.numbers_without_disc(),
+                },
             );
         }
+    }
+
+    fn shadow_passes(&self) -> &[wgpu::RenderPipeline; 2] {
+        self.shadow_passes.get_or_init(|| {
+            let shadow_layout = shadows::layout(&self.device);
+            [
+                (&self.sky_layout, shadows::in_air(sky_shader())),
+                (&self.fog_layout, shadows::in_fog(fog_shader())),
+            ]
+            .map(|(first, shader)| {
+                let groups = [first, &self.frame_layout, &shadow_layout];
+                single(
+                    &self.device,
+                    &groups,
+                    (&shader, "shade"),
+                    self.target_format,
+                )
+            })
+        })
     }
 
     /// A map of light from all directions, with faces of `side` texels on a side: a power of two from 8 to 2048.
@@ -191,9 +267,16 @@ impl SkyPasses {
                 exposure,
             };
             let numbers = camera.numbers_without_disc();
+            let [sky, fog] = map.passes();
+            let passes = Passes {
+                sky,
+                fog,
+                lights: None,
+                shadows: None,
+            };
             self.draw(
                 drawn,
-                (map.passes(), None),
+                &passes,
                 encoder,
                 (&target, black),
                 map.depth(),
@@ -207,7 +290,7 @@ impl SkyPasses {
     fn draw(
         &self,
         drawn: &Drawn,
-        ([sky_pass, fog_pass], light_pass): ([&Pass; 2], Option<&wgpu::RenderPipeline>),
+        passes: &Passes<'_>,
         encoder: &mut wgpu::CommandEncoder,
         (target, load): (&wgpu::TextureView, wgpu::LoadOp<wgpu::Color>),
         depth: &wgpu::TextureView,
@@ -241,14 +324,36 @@ impl SkyPasses {
             multiview_mask: None,
         });
         pass.set_bind_group(1, &frame, &[]);
-        sky_pass.draw(&mut pass, &drawn.sky);
-        if let Some(fog) = &drawn.fog {
-            fog_pass.draw(&mut pass, &fog.tables);
-            if let (Some(pipeline), Some(lights)) = (light_pass, &fog.lights) {
-                draw(&mut pass, pipeline, lights);
-            }
+        let (first, second) = (&drawn.first, drawn.second.as_ref());
+        let shade =
+            |pass: &mut wgpu::RenderPass<'_>, medium: usize, once: Option<&wgpu::BindGroup>| {
+                if let (Some((pipelines, shadows)), Some(once)) = (passes.shadows, once) {
+                    pass.set_bind_group(2, shadows.group(), &[]);
+                    draw(pass, &pipelines[medium], once);
+                }
+            };
+        let more = second.map(|source| &source.sky);
+        passes.sky.draw(&mut pass, &first.sky, more);
+        shade(&mut pass, 0, first.sky_once.as_ref());
+        if let Some([fog, once]) = &first.fog {
+            let more = second.and_then(|source| source.fog.as_ref());
+            passes.fog.draw(&mut pass, fog, more.map(|[fog, _]| fog));
+            shade(&mut pass, 1, Some(once));
+        }
+        let lights = drawn.fog.as_ref().and_then(|fog| fog.lights.as_ref());
+        if let (Some(pipeline), Some(lights)) = (passes.lights, lights) {
+            draw(&mut pass, pipeline, lights);
         }
     }
+}
+
+/// Pipelines of a frame.
+struct Passes<'a> {
+    sky: &'a Pass,
+    fog: &'a Pass,
+    lights: Option<&'a wgpu::RenderPipeline>,
+    /// Of shadows in air and in fog.
+    shadows: Option<(&'a [wgpu::RenderPipeline; 2], &'a TerrainShadows)>,
 }
 
 /// What passes know of their pixels.
@@ -256,12 +361,15 @@ const FRAME: &str = concat!(include_str!("camera.wgsl"), include_str!("frame.wgs
 
 /// The passes of the sky.
 fn sky_shader() -> String {
-    source(&[Part::SkyTables]) + CORNER + FRAME + include_str!("sky.wgsl")
+    source(&[Part::SkyTables, Part::Disc, Part::Shadows])
+        + CORNER
+        + FRAME
+        + include_str!("sky.wgsl")
 }
 
 /// The passes of the fog.
 fn fog_shader() -> String {
-    source(&[Part::Fog, Part::FogTable]) + CORNER + FRAME + include_str!("fog.wgsl")
+    source(&[Part::Fog, Part::FogTable, Part::Shadows]) + CORNER + FRAME + include_str!("fog.wgsl")
 }
 
 /// The pass of lights in fog.
@@ -296,5 +404,14 @@ mod tests {
         let (_, add) = all.iter().find(|(name, _)| name == "add").unwrap();
         let row = format!("| lights | none | {add} |");
         assert!(readme.contains(&row), "{row}");
+        for (shader, name) in [
+            (shadows::in_air(sky_shader()), "shadows in air"),
+            (shadows::in_fog(fog_shader()), "shadows in fog"),
+        ] {
+            let all = costs(&shader).unwrap();
+            let (_, shade) = all.iter().find(|(name, _)| name == "shade").unwrap();
+            let row = format!("| {name} | none | {shade} |");
+            assert!(readme.contains(&row), "{row}");
+        }
     }
 }

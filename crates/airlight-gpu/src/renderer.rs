@@ -4,13 +4,13 @@ use crate::camera::Camera;
 use crate::environment::EnvironmentMap;
 use crate::error::SkyRendererError;
 use crate::fog::Fog;
-use crate::frame_tables::{FrameTables, SkySolver, checked};
+use crate::frame_tables::{FrameTables, SkySolver, check};
 use crate::lighting::Lighting;
 use crate::passes::SkyPasses;
+use crate::shadows::TerrainShadows;
 use airlight::atmosphere::Atmosphere;
 use airlight::fog::lights::Light;
-use airlight::glam::DVec3;
-use airlight::sky::{Sky, SkySettings};
+use airlight::sky::{LightSource, Sky, SkySettings};
 use airlight::spectrum::RgbSpace;
 use std::panic::resume_unwind;
 use std::thread::JoinHandle;
@@ -24,6 +24,8 @@ pub struct SkyRendererSettings {
     pub space: RgbSpace,
     /// Settings of the solver. With the default suns it solves once for all suns and heights.
     pub solver: SkySettings,
+    /// Whether tables hold what shadows in the air need: [`SkyRenderer::record_shadowed`].
+    pub shadows: bool,
 }
 
 impl SkyRendererSettings {
@@ -33,6 +35,7 @@ impl SkyRendererSettings {
             target_format,
             space: RgbSpace::Srgb,
             solver: SkySettings::default(),
+            shadows: false,
         }
     }
 }
@@ -52,6 +55,7 @@ pub struct Work {
 pub struct SkyRenderer {
     solver: SkySolver,
     passes: SkyPasses,
+    second: Option<LightSource>,
     fog: Option<Fog>,
     has_lights: bool,
     drawn: Option<Place>,
@@ -60,8 +64,15 @@ pub struct SkyRenderer {
     work: Work,
 }
 
-/// What tables are for: height of the eye above sea level, m, unit vector towards the sun, and fog.
-type Place = (f64, DVec3, Option<Fog>);
+/// What tables are for.
+#[derive(Clone, Debug, PartialEq)]
+struct Place {
+    /// Height of the eye above sea level, m.
+    height_m: f64,
+    first: LightSource,
+    second: Option<LightSource>,
+    fog: Option<Fog>,
+}
 
 impl SkyRenderer {
     /// Solves for the light in an atmosphere, which takes a second or more, and makes the pipelines.
@@ -74,9 +85,14 @@ impl SkyRenderer {
         atmosphere: &Atmosphere,
         settings: &SkyRendererSettings,
     ) -> Result<Self, SkyRendererError> {
+        let solver = SkySolver::new(atmosphere, &settings.solver, settings.space)?;
         Ok(Self {
             passes: SkyPasses::new(device, queue, settings.target_format)?,
-            solver: SkySolver::new(atmosphere, &settings.solver, settings.space)?,
+            solver: match settings.shadows {
+                true => solver.with_shadows()?,
+                false => solver,
+            },
+            second: None,
             fog: None,
             has_lights: false,
             drawn: None,
@@ -85,18 +101,39 @@ impl SkyRenderer {
         })
     }
 
-    /// Sets the height of the eye above sea level, m, and the direction to the sun. Fills the tables if either has changed,
-    /// or the fog.
+    /// Sets the height of the eye above sea level, m, and the sun, by its direction or with its distance, or another source in its
+    /// place. Fills the tables if any of these has changed, or the second source, or the fog.
     ///
     /// # Errors
     /// [`SkyRendererError`] for numbers that are no place or direction, and for a place that the sky is not prepared for and cannot be
     /// solved for.
-    pub fn update(&mut self, height_m: f64, sun: DVec3) -> Result<(), SkyRendererError> {
-        let place = self.place(height_m, sun)?;
+    pub fn update(
+        &mut self,
+        height_m: f64,
+        sun: impl Into<LightSource>,
+    ) -> Result<(), SkyRendererError> {
+        let place = self.place(height_m, sun.into())?;
         if !self.is_drawn(&place) {
             let tables = self.fill(&place)()?;
             self.show(&tables, place);
         }
+        Ok(())
+    }
+
+    /// Sets or removes a second source of light, from the next update on: the moon beside the sun, or a second sun. The sun should be the
+    /// brighter one of the two, as its light gives geometry its colours behind air; once the moon is, it may take its place in
+    /// [`SkyRenderer::update`].
+    ///
+    /// # Errors
+    /// [`SkyRendererError::Sun`] for a source without a direction.
+    pub fn set_second_source(
+        &mut self,
+        source: Option<LightSource>,
+    ) -> Result<(), SkyRendererError> {
+        source
+            .as_ref()
+            .map_or(Ok(()), |source| check(0.0, source))?;
+        self.second = source;
         Ok(())
     }
 
@@ -124,6 +161,11 @@ impl SkyRenderer {
         Ok(())
     }
 
+    /// Sets whether frames show the discs of sun and moon: see [`SkyPasses::set_discs`].
+    pub fn set_discs(&mut self, has_discs: bool) {
+        self.passes.set_discs(has_discs);
+    }
+
     /// As [`SkyRenderer::update`], but fills the tables on a thread of their own. Until they are filled, frames are drawn with the last
     /// ones, so that a program that calls this before each frame keeps its pace while the sun moves. True if the tables are those
     /// of this eye and sun. Where threads cannot be started, as in a browser, it fills the tables at once.
@@ -136,9 +178,9 @@ impl SkyRenderer {
     pub fn update_in_background(
         &mut self,
         height_m: f64,
-        sun: DVec3,
+        sun: impl Into<LightSource>,
     ) -> Result<bool, SkyRendererError> {
-        let place = self.place(height_m, sun)?;
+        let place = self.place(height_m, sun.into())?;
         if let Some((thread, filled_for)) = self.filling.take_if(|(t, _)| t.is_finished()) {
             let tables = thread.join().unwrap_or_else(|panic| resume_unwind(panic))?;
             self.show(&tables, filled_for);
@@ -146,15 +188,20 @@ impl SkyRenderer {
         if !self.is_drawn(&place) && self.filling.is_none() {
             match std::thread::Builder::new().spawn(self.fill(&place)) {
                 Ok(thread) => self.filling = Some((thread, place.clone())),
-                Err(_) => self.update(height_m, sun)?,
+                Err(_) => self.update(height_m, place.first)?,
             }
         }
         Ok(self.is_drawn(&place))
     }
 
-    fn place(&self, height_m: f64, sun: DVec3) -> Result<Place, SkyRendererError> {
-        let (height_m, sun) = checked(height_m, sun)?;
-        Ok((height_m, sun, self.fog.clone()))
+    fn place(&self, height_m: f64, first: LightSource) -> Result<Place, SkyRendererError> {
+        check(height_m, &first)?;
+        Ok(Place {
+            height_m,
+            first,
+            second: self.second,
+            fog: self.fog.clone(),
+        })
     }
 
     fn is_drawn(&self, place: &Place) -> bool {
@@ -166,8 +213,14 @@ impl SkyRenderer {
         &self,
         place: &Place,
     ) -> impl FnOnce() -> Result<FrameTables, SkyRendererError> + Send + use<> {
-        let (solver, (height_m, sun, fog)) = (self.solver.clone(), place.clone());
-        move || solver.tables(height_m, sun, fog.as_ref())
+        let (solver, place) = (self.solver.clone(), place.clone());
+        move || {
+            let (height_m, fog) = (place.height_m, place.fog.as_ref());
+            match place.second {
+                Some(second) => solver.tables_under_two(height_m, [place.first, second], fog),
+                None => solver.tables(height_m, place.first, fog),
+            }
+        }
     }
 
     /// Draws with tables from now on.
@@ -191,7 +244,20 @@ impl SkyRenderer {
         depth: &wgpu::TextureView,
         camera: &Camera,
     ) {
-        self.passes.record(encoder, target, depth, camera);
+        self.record_shadowed(encoder, target, depth, camera, None);
+    }
+
+    /// As [`SkyRenderer::record`], with the shadows of ground in air and fog: see [`SkyPasses::record_shadowed`].
+    pub fn record_shadowed(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+        depth: &wgpu::TextureView,
+        camera: &Camera,
+        shadows: Option<&TerrainShadows>,
+    ) {
+        let passes = &self.passes;
+        passes.record_shadowed(encoder, target, depth, camera, shadows);
         self.work.frames += u64::from(self.drawn.is_some());
     }
 

@@ -1,21 +1,25 @@
 //! The tables of a sky on the device.
 
-use crate::frame_tables::FrameTables;
-use crate::gpu_tables::{self, FLAT, SOLID};
+use crate::frame_tables::SourceTables;
+use crate::gpu_tables::{self, FLAT, SOLID, Tables};
 use airlight_shaders::twins::colour::RgbWeights;
+use airlight_shaders::twins::sky_tables::SkyScales;
 
 /// Layout of the tables.
 pub fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     gpu_tables::layout(device, &[FLAT, FLAT, SOLID, SOLID, FLAT, FLAT, FLAT])
 }
 
-/// Uploads the tables of a frame.
+/// Place of the smooth aerial perspective among the textures.
+const AERIAL_SMOOTH: usize = 2;
+
+/// Uploads the tables of a source: for all of its light in the air, and, with its table, for what the air scatters once.
 pub fn upload(
-    device: (&wgpu::Device, &wgpu::Queue),
+    (device, queue): (&wgpu::Device, &wgpu::Queue),
     layout: &wgpu::BindGroupLayout,
-    frame: &FrameTables,
-) -> wgpu::BindGroup {
-    let tables = &frame.sky;
+    source: &SourceTables,
+) -> (wgpu::BindGroup, Option<wgpu::BindGroup>) {
+    let tables = &source.sky;
     let textures = [
         &tables.sky_smooth,
         &tables.sky_haze,
@@ -23,14 +27,26 @@ pub fn upload(
         &tables.aerial_haze,
         &tables.extinction,
         &tables.phase,
-        &frame.disc,
+        &source.disc.texture(),
     ];
-    gpu_tables::group(device, layout, &numbers(frame), &textures)
+    let textures = Tables::new((device, queue), &textures);
+    let numbers = |scales| numbers(source, scales);
+    let all = textures.group(device, layout, &numbers(tables.scales));
+    let once = source.single.as_ref().map(|single| {
+        let smooth = gpu_tables::upload(device, queue, &single.smooth);
+        let scales = SkyScales {
+            smooth_light: single.scale,
+            ..tables.scales
+        };
+        let textures = textures.with(AERIAL_SMOOTH, smooth);
+        textures.group(device, layout, &numbers(scales))
+    });
+    (all, once)
 }
 
 /// The numbers of the shader's struct `Sky`.
-fn numbers(frame: &FrameTables) -> Vec<f32> {
-    let tables = &frame.sky;
+fn numbers(source: &SourceTables, scales: SkyScales) -> Vec<f32> {
+    let tables = &source.sky;
     let mut all = tables.view.sun.to_array().to_vec();
     all.extend([
         tables.view.height_m,
@@ -39,8 +55,8 @@ fn numbers(frame: &FrameTables) -> Vec<f32> {
         tables.view.horizon_rad,
         tables.view.highest_rad,
     ]);
-    all.extend(tables.scales.smooth_light.to_array());
-    all.extend(tables.scales.haze.to_array());
+    all.extend(scales.smooth_light.to_array());
+    all.extend(scales.haze.to_array());
     let mut add = |weights: &RgbWeights| {
         for channel in [weights.red, weights.green, weights.blue] {
             all.extend(channel.to_array());
@@ -49,6 +65,6 @@ fn numbers(frame: &FrameTables) -> Vec<f32> {
     add(&tables.radiance_weights);
     add(&tables.transmittance_weights);
     add(&tables.disc_weights);
-    all.extend([frame.disc_one_minus_cos, 0.0, 0.0, 0.0]);
+    all.extend(source.disc.numbers());
     all
 }

@@ -1,5 +1,5 @@
 // The passes of the sky, behind the functions of airlight-shaders and frame.wgsl: one multiplies the frame by the transmittance of the air, one
-// adds the light of air, sky and sun.
+// adds the light of air, sky and sun, or of the moon in its place.
 
 struct Sky {
     view: SkyView,
@@ -7,8 +7,18 @@ struct Sky {
     radiance_weights: RgbWeights,
     transmittance_weights: RgbWeights,
     disc_weights: RgbWeights,
-    /// 1 minus the cosine of the angular radius of the sun's disc.
-    disc_one_minus_cos: f32,
+    disc: Disc,
+}
+
+/// The disc of the sun, or of the moon.
+struct Disc {
+    /// From the moon to the sun; 0 for the sun itself, all of whose disc shines.
+    moon_to_sun: vec3<f32>,
+    /// 1 minus the cosine of the angular radius.
+    one_minus_cos: f32,
+    sin_radius: f32,
+    /// Factor of the table.
+    radiance: f32,
 }
 
 @group(0) @binding(0) var<uniform> sky: Sky;
@@ -19,7 +29,7 @@ struct Sky {
 @group(0) @binding(5) var aerial_haze: texture_3d<f32>;
 @group(0) @binding(6) var extinction: texture_2d<f32>;
 @group(0) @binding(7) var phase: texture_2d<f32>;
-@group(0) @binding(8) var disc: texture_2d<f32>;
+@group(0) @binding(8) var disc_table: texture_2d<f32>;
 
 /// Samples on a side of a pixel that the edge of the sun's disc crosses.
 const DISC_SAMPLES: u32 = 8u;
@@ -40,17 +50,22 @@ fn is_ground(seen: Pixel) -> bool {
 /// Radiance of the sun's disc outside the air along a direction without geometry; 0 beside it and below the horizon.
 fn disc_outside_air(direction: vec3<f32>) -> vec4<f32> {
     let one_minus_cos = one_minus_cos_between(direction, sky.view.sun);
-    if one_minus_cos >= sky.disc_one_minus_cos || is_ground(Pixel(direction, -1.0)) {
+    if one_minus_cos >= sky.disc.one_minus_cos || is_ground(Pixel(direction, -1.0)) {
         return vec4<f32>(0.0);
     }
-    let mu = sqrt(1.0 - one_minus_cos / sky.disc_one_minus_cos);
-    return textureSampleLevel(disc, linear_sampler, vec2<f32>(texel_coordinate(mu, 64.0), 0.5), 0.0);
+    let mu = sqrt(1.0 - one_minus_cos / sky.disc.one_minus_cos);
+    let relative = textureSampleLevel(disc_table, linear_sampler, vec2<f32>(texel_coordinate(mu, 64.0), 0.5), 0.0);
+    if all(sky.disc.moon_to_sun == vec3<f32>(0.0)) {
+        return sky.disc.radiance * relative;
+    }
+    let reflected = moon_reflection(sky.view.sun, sky.disc.moon_to_sun, sky.disc.sin_radius, direction);
+    return sky.disc.radiance * reflected * relative;
 }
 
 /// Red, green and blue of the sun's disc, dimmed by the air: the mean over a pixel without geometry, of this size in clip space.
 fn sun_disc(in: Corner, seen: Pixel, pixel_size: vec2<f32>) -> vec3<f32> {
     let reach = distance(direction_at(in.clip + 0.5 * pixel_size), seen.direction);
-    let radius = sqrt(2.0 * sky.disc_one_minus_cos);
+    let radius = sqrt(2.0 * sky.disc.one_minus_cos);
     let away = sqrt(2.0 * one_minus_cos_between(seen.direction, sky.view.sun));
     if camera.disc == 0.0 || away > radius + reach {
         return vec3<f32>(0.0);

@@ -3,11 +3,12 @@
 use crate::camera::Camera;
 use crate::error::SkyRendererError;
 use crate::gpu_tables::{self, FLAT};
-use crate::lighting::Lighting;
-use crate::pass::{CORNER, UNIFORM, bind_group, group_layout, uniform};
+use crate::lighting::{DirectLight, Lighting};
+use crate::pass::{CORNER, UNIFORM, bind_group, cover, covering, group_layout, uniform};
+use crate::shadows::TerrainShadows;
 use airlight::glam::DVec3;
 use airlight_shaders::twins::texture::Texture;
-use glam::Vec4;
+use glam::{Vec3, Vec4};
 
 /// Multiple of heights that half floats hold exactly, m.
 const WHOLE_M: f32 = 16.0;
@@ -181,7 +182,7 @@ pub struct TerrainView {
 }
 
 /// Draws the ground of a [`HeightField`] into a frame, before [`SkyPasses`](crate::SkyPasses) adds the air: by a march along each ray, in
-/// any projection, with the sun's shadow. Light is that at the eye; the sun's shadow is not in the air or fog.
+/// any projection, with the sun's shadow, and finds that in air and fog ([`TerrainPass::shadows`]). Light is that at the eye.
 #[derive(Debug)]
 pub struct TerrainPass {
     device: wgpu::Device,
@@ -191,16 +192,21 @@ pub struct TerrainPass {
     pipeline: wgpu::RenderPipeline,
     sampler: wgpu::Sampler,
     heights: Option<Heights>,
+    /// Finds the surface of shadows, once there are any.
+    shadow_pipeline: Option<wgpu::RenderPipeline>,
+    /// The surface of shadows, and the sun that throws them.
+    shadow_surface: Option<(Vec3, wgpu::TextureView)>,
 }
 
 /// A height field on the device.
 #[derive(Debug)]
-struct Heights {
+pub struct Heights {
     view: wgpu::TextureView,
-    extent_m: [f32; 2],
+    size: [u32; 2],
+    pub extent_m: [f32; 2],
     /// The smaller distance between posts.
     spacing_m: f32,
-    highest_m: f32,
+    pub highest_m: f32,
     steepest: f32,
 }
 
@@ -266,20 +272,56 @@ impl TerrainPass {
             pipeline,
             sampler,
             heights: None,
+            shadow_pipeline: None,
+            shadow_surface: None,
         }
     }
 
     /// Uploads heights, which are drawn from now on.
     pub fn set_heights(&mut self, field: &HeightField) {
-        let [columns, rows] = field.size().map(|n| n as f32);
+        let size = field.size().map(|n| n as u32);
+        let [columns, rows] = size.map(|n| n as f32);
         let [across_m, down_m] = field.spacing_m().map(|spacing_m| spacing_m as f32);
+        self.shadow_surface = None;
         self.heights = Some(Heights {
             view: gpu_tables::upload(&self.device, &self.queue, &field.texture()),
+            size,
             extent_m: [columns * across_m, rows * down_m],
             spacing_m: across_m.min(down_m),
             highest_m: field.highest_m(),
             steepest: field.steepest(),
         });
+    }
+
+    /// The shadows that the ground throws into air and fog under the sun of a view, whose surface is found when the sun has moved; `None` before the
+    /// first heights, and for a sun that is not above the horizontal plane. Ground up to 300 km away throws shadows. They are those of a
+    /// sun without extent, at the elevation that it has at the eye.
+    pub fn shadows(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        view: &TerrainView,
+    ) -> Option<TerrainShadows> {
+        let sun = view.lighting.sun;
+        let heights = self.heights.as_ref().filter(|_| sun.y > 0.0)?;
+        let known = self.shadow_surface.take();
+        let (_, surface) = match known.filter(|(of, _)| *of == sun) {
+            Some(known) => self.shadow_surface.insert(known),
+            None => {
+                let target = gpu_tables::target(&self.device, heights.size);
+                let pipeline = self
+                    .shadow_pipeline
+                    .get_or_insert_with(|| shadow_pipeline(&self.device, &self.layout));
+                let tables = bound((&self.device, &self.layout), (heights, &self.sampler), view);
+                cover(encoder, "airlight shadows", &target, pipeline, &tables);
+                self.shadow_surface.insert((sun, target))
+            }
+        };
+        Some(TerrainShadows::new(
+            &self.device,
+            (heights, &self.sampler),
+            surface,
+            (view.eye_m, view.planet_radius_m),
+        ))
     }
 
     /// Records the ground into `target` and its depth into `depth`, an `R32Float` texture of the same size that holds the depth without
@@ -295,13 +337,7 @@ impl TerrainPass {
         let Some(heights) = &self.heights else {
             return;
         };
-        let tables = gpu_tables::bind(
-            &self.device,
-            &self.layout,
-            &numbers(heights, view),
-            &self.sampler,
-            std::slice::from_ref(&heights.view),
-        );
+        let tables = bound((&self.device, &self.layout), (heights, &self.sampler), view);
         let label = "airlight camera";
         let camera = uniform(&self.device, label, &camera.numbers());
         let camera = [camera.as_entire_binding()];
@@ -332,6 +368,37 @@ impl TerrainPass {
     }
 }
 
+/// Heights and numbers of a view for the shader.
+fn bound(
+    (device, layout): (&wgpu::Device, &wgpu::BindGroupLayout),
+    (heights, sampler): (&Heights, &wgpu::Sampler),
+    view: &TerrainView,
+) -> wgpu::BindGroup {
+    let views = std::slice::from_ref(&heights.view);
+    gpu_tables::bind(device, layout, &numbers(heights, view), sampler, views)
+}
+
+/// The pipeline that finds the surface of shadows.
+fn shadow_pipeline(device: &wgpu::Device, layout: &wgpu::BindGroupLayout) -> wgpu::RenderPipeline {
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("airlight shadows"),
+        bind_group_layouts: &[Some(layout)],
+        immediate_size: 0,
+    });
+    let source = shader() + include_str!("shadow_heights.wgsl");
+    let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("airlight shadows"),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    covering(
+        device,
+        &layout,
+        &shader,
+        "shadow_height",
+        (gpu_tables::FORMAT, None),
+    )
+}
+
 fn shader() -> String {
     [
         CORNER,
@@ -350,6 +417,13 @@ fn numbers(heights: &Heights, view: &TerrainView) -> Vec<f32> {
     all.push(SUN_TANGENT as f32);
     all.extend(light.sun_illuminance_lx.to_array());
     all.push(heights.highest_m);
+    let second = light.second.unwrap_or(DirectLight {
+        direction: Vec3::Y,
+        illuminance_lx: Vec3::ZERO,
+    });
+    for vector in [second.direction, second.illuminance_lx] {
+        all.extend(vector.extend(0.0).to_array());
+    }
     all.extend(heights.extent_m);
     all.extend([heights.steepest, heights.spacing_m]);
     for albedo in [view.level_albedo, view.steep_albedo] {
@@ -370,7 +444,6 @@ mod tests {
     use crate::read::read_texture;
     use crate::terrain_point::TerrainPoint;
     use airlight::axes;
-    use glam::Vec3;
     use std::f32::consts::{FRAC_PI_2, PI};
 
     /// A ridge from north to south.
@@ -417,6 +490,7 @@ mod tests {
             lighting: Lighting {
                 sun: axes::direction(90.0, sun_deg).as_vec3(),
                 sun_illuminance_lx: Vec3::splat(8e4),
+                second: None,
                 sky_coefficients_lx,
             },
             level_albedo: [0.2, 0.2, 0.2],

@@ -10,6 +10,9 @@ struct Terrain {
     /// Illuminance of a surface that faces the sun.
     sun_illuminance: vec3<f32>,
     highest_m: f32,
+    second: vec3<f32>,
+    /// Illuminance of a surface that faces a second source, 0 without one.
+    second_illuminance: vec3<f32>,
     /// Size of the grid, m.
     extent_m: vec2<f32>,
     /// Tangent of the steepest slope.
@@ -101,18 +104,18 @@ fn first_crossing(direction: vec3<f32>, above_m: f32, below_m: f32) -> f32 {
     return 0.5 * (from_m + to_m);
 }
 
-/// Part of the sun's disc that a point of the ground sees.
-fn sun_visibility(point: vec3<f32>) -> f32 {
-    let per_clearance = step_per_clearance(terrain.sun);
+/// Part of the disc of a source that a point of the ground sees.
+fn disc_visibility(point: vec3<f32>, towards: vec3<f32>) -> f32 {
+    let per_clearance = step_per_clearance(towards);
     var visible = 1.0;
     var here_m = 0.5 * terrain.spacing_m;
     for (var k = 0u; k < SHADOW_STEPS; k++) {
-        let above_m = clearance(point, terrain.sun, here_m);
+        let above_m = clearance(point, towards, here_m);
         visible = min(visible, 0.5 + 0.5 * above_m / (here_m * terrain.sun_tangent));
         if visible <= 0.0 {
             return 0.0;
         }
-        if height_along(point, terrain.sun, here_m) > terrain.highest_m && terrain.sun.y > 0.0 {
+        if height_along(point, towards, here_m) > terrain.highest_m && towards.y > 0.0 {
             break;
         }
         here_m += max(above_m * per_clearance, 0.1 * terrain.spacing_m + 0.02 * here_m);
@@ -128,16 +131,23 @@ fn sky_illuminance(n: vec3<f32>) -> vec3<f32> {
     return max(sum.xyz, vec3<f32>(0.0));
 }
 
+/// Illuminance of a surface at a point by the disc of a source, from its illuminance of a surface that faces it.
+fn direct_illuminance(point: vec3<f32>, normal: vec3<f32>, towards: vec3<f32>, facing_it: vec3<f32>) -> vec3<f32> {
+    let cosine = dot(normal, towards);
+    if cosine <= 0.0 || facing_it.y <= 0.0 {
+        return vec3<f32>(0.0);
+    }
+    return facing_it * (cosine * disc_visibility(point, towards));
+}
+
 /// Luminance of the ground at a point.
 fn reflected(point: vec3<f32>) -> vec3<f32> {
     let slope = ground(point.xz).yz;
     let normal = normalize(vec3<f32>(-slope.x, 1.0, -slope.y));
     let albedo = mix(terrain.level_albedo, terrain.steep_albedo, smoothstep(0.5, 1.0, length(slope)));
-    let facing = dot(normal, terrain.sun);
-    var illuminance = sky_illuminance(normal);
-    if facing > 0.0 && terrain.sun_illuminance.y > 0.0 {
-        illuminance += terrain.sun_illuminance * (facing * sun_visibility(point));
-    }
+    let illuminance = sky_illuminance(normal)
+        + direct_illuminance(point, normal, terrain.sun, terrain.sun_illuminance)
+        + direct_illuminance(point, normal, terrain.second, terrain.second_illuminance);
     return albedo * illuminance / 3.14159265;
 }
 

@@ -1,5 +1,6 @@
 //! [`TerrainPoint`]: where a ray meets terrain, and the light there, on the processor: the functions of `terrain.wgsl`.
 
+use crate::lighting::DirectLight;
 use crate::terrain::{HeightField, SUN_TANGENT, TerrainView};
 use airlight::glam::{DVec2, DVec3};
 use glam::Vec3;
@@ -112,23 +113,33 @@ impl March<'_> {
         0.5 * (from_m + to_m)
     }
 
-    /// Part of the sun's disc that a point of the ground sees.
-    fn sun_visibility(&self, point: DVec3, sun: DVec3) -> f64 {
-        let per_clearance = self.step_per_clearance(sun);
+    /// Part of the disc of a source that a point of the ground sees.
+    fn disc_visibility(&self, point: DVec3, towards: DVec3) -> f64 {
+        let per_clearance = self.step_per_clearance(towards);
         let mut visible = 1.0f64;
         let mut here_m = 0.5 * self.spacing_m;
         for _ in 0..SHADOW_STEPS {
-            let above_m = self.clearance(point, sun, here_m);
+            let above_m = self.clearance(point, towards, here_m);
             visible = visible.min(0.5 + 0.5 * above_m / (here_m * SUN_TANGENT));
             if visible <= 0.0 {
                 return 0.0;
             }
-            if self.height_along(point, sun, here_m) > self.highest_m && sun.y > 0.0 {
+            if self.height_along(point, towards, here_m) > self.highest_m && towards.y > 0.0 {
                 break;
             }
             here_m += (above_m * per_clearance).max(0.1 * self.spacing_m + 0.02 * here_m);
         }
         visible
+    }
+
+    /// Illuminance of a surface at a point by the disc of a source, lx.
+    fn direct_illuminance_lx(&self, point: DVec3, normal: Vec3, light: &DirectLight) -> Vec3 {
+        let cosine = normal.dot(light.direction);
+        if cosine <= 0.0 || light.illuminance_lx.y <= 0.0 {
+            return Vec3::ZERO;
+        }
+        let visible = self.disc_visibility(point, light.direction.as_dvec3()) as f32;
+        light.illuminance_lx * (cosine * visible)
     }
 }
 
@@ -141,11 +152,10 @@ fn reflected(march: &March<'_>, view: &TerrainView, point: DVec3) -> Vec3 {
     let [level, rock] = [view.level_albedo, view.steep_albedo].map(Vec3::from_array);
     let albedo = level + (rock - level) * steep;
     let light = &view.lighting;
-    let facing = normal.dot(light.sun);
-    let mut illuminance = light.sky_illuminance_lx(normal);
-    if facing > 0.0 && light.sun_illuminance_lx.y > 0.0 {
-        let visible = march.sun_visibility(point, light.sun.as_dvec3()) as f32;
-        illuminance += light.sun_illuminance_lx * (facing * visible);
-    }
-    albedo * illuminance / PI
+    let discs = [Some(light.first()), light.second];
+    let direct = discs.iter().flatten();
+    let direct: Vec3 = direct
+        .map(|disc| march.direct_illuminance_lx(point, normal, disc))
+        .sum();
+    albedo * (light.sky_illuminance_lx(normal) + direct) / PI
 }

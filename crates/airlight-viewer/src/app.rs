@@ -901,7 +901,7 @@ impl Viewer {
         let Some(light) = &self.light else {
             return false;
         };
-        let eye_height_m = f64::from(light.tables.sky.view.height_m);
+        let eye_height_m = f64::from(light.tables.first.sky.view.height_m);
         let around = lights::around(&self.state, frame, eye_height_m);
         if around == self.lights {
             return false;
@@ -1248,7 +1248,7 @@ fn luminances(mut exposed: Vec<[f32; 3]>, exposure: f32) -> Vec<[f32; 3]> {
 /// Exposure at which half floats hold the sun's disc, whose centre is at most twice as bright as its mean.
 #[cfg(not(target_arch = "wasm32"))]
 fn sun_exposure(light: &Light) -> f32 {
-    let solid_angle = std::f32::consts::TAU * light.tables.disc_one_minus_cos;
+    let solid_angle = std::f32::consts::TAU * light.tables.first.disc.one_minus_cos;
     let mean = light.tables.lighting.sun_illuminance_lx.max_element() / solid_angle;
     f32::from(half::f16::MAX) / (2.0 * mean).max(1.0)
 }

@@ -174,7 +174,7 @@ pub struct Facts {
 impl Light {
     /// Altitude of the ground of the planet above sea level, m.
     pub fn ground_altitude_m(&self) -> f64 {
-        self.facts.altitude_m - f64::from(self.tables.sky.view.height_m)
+        self.facts.altitude_m - f64::from(self.tables.first.sky.view.height_m)
     }
 }
 
@@ -580,7 +580,7 @@ fn facts(
         sun_elevation_deg: sun.elevation_deg,
         sun_azimuth_deg: sun.azimuth_deg,
         altitude_m: scene.observer_altitude_m,
-        horizon_deg: f64::from(tables.sky.view.horizon_rad).to_degrees(),
+        horizon_deg: f64::from(tables.first.sky.view.horizon_rad).to_degrees(),
         haze_depth_550: depth(ConstituentKind::Aerosol, NM),
         ozone_du: depth(ConstituentKind::Ozone, 600.0) / per_du,
         ground_albedo: air.planet.ground_albedo.at(NM),
@@ -588,6 +588,7 @@ fn facts(
         sun_lx: luminance(light.sun_illuminance_lx) * f64::from(light.sun.y.max(0.0)),
         sky_lx: luminance(light.sky_illuminance_lx(Vec3::Y)),
         holds_lights: tables
+            .first
             .fog
             .as_ref()
             .is_some_and(|fog| fog.around_lights.is_some()),

@@ -4,14 +4,14 @@ use crate::compute::{
     Answer, Colours, Facts, GroundLight, Light, Output, Request, Spectrum, Target, Task,
 };
 use airlight::scene::Scene;
-use airlight_gpu::{FogFrame, FrameTables, Lighting};
+use airlight_gpu::{DirectLight, DiscTable, FogFrame, FrameTables, Lighting, SourceTables};
 use airlight_shaders::twins::colour::RgbWeights;
 use airlight_shaders::twins::fog::{FogLayer, FogMedium};
 use airlight_shaders::twins::fog_table::FogTableView;
 use airlight_shaders::twins::lights::ExponentialFog;
 use airlight_shaders::twins::sky_tables::{SkyScales, SkyView};
 use airlight_shaders::twins::texture::Texture;
-use airlight_shaders::{FogTables, SkyTables};
+use airlight_shaders::{FogTables, SingleScatteringTable, SkyTables};
 use glam::{Vec3, Vec4};
 
 impl Request {
@@ -111,7 +111,10 @@ structs! {
         sun_elevation_deg, sun_azimuth_deg, altitude_m, horizon_deg, haze_depth_550, ozone_du, ground_albedo, is_earth, sun_lx, sky_lx,
         holds_lights, visibility_m
     }
-    FrameTables { sky, disc, disc_one_minus_cos, fog, lighting }
+    FrameTables { first, second, lighting }
+    SourceTables { sky, disc, single, fog }
+    SingleScatteringTable { smooth, scale }
+    DiscTable { radiance, one_minus_cos, moon_to_sun }
     SkyTables {
         view, scales, sky_smooth, sky_haze, aerial_smooth, aerial_haze, extinction, phase, radiance_weights, transmittance_weights,
         disc_weights
@@ -125,7 +128,8 @@ structs! {
     FogTables { view, diffuse, streams, stream_phase }
     FogTableView { sun, below_per_sine, depth_below, above_per_sine, depth_above, diffuse_scale, sunlit_scale }
     FogLayer { extinction_per_m, profile, scattering_per_m, height_m, phase, scale_m }
-    Lighting { sun, sun_illuminance_lx, sky_coefficients_lx }
+    Lighting { sun, sun_illuminance_lx, second, sky_coefficients_lx }
+    DirectLight { direction, illuminance_lx }
 }
 
 impl Bytes for Task {

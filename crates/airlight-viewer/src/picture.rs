@@ -171,7 +171,7 @@ impl Picture {
     /// Draws with this light from now on.
     pub fn set_light(&mut self, light: &Light) {
         self.sky.set_tables(&light.tables);
-        let view = &light.tables.sky.view;
+        let view = &light.tables.first.sky.view;
         self.eye_m = [view.height_m, view.ground_radius_m].map(f64::from);
     }
 
