@@ -8,7 +8,7 @@
 //! shows a frame on a display.
 //! Nothing is computed again when only the camera turns. [`Lighting`] is the light of sun and sky for the program's own surfaces,
 //! [`EnvironmentMap`] what they reflect. A second source, such as the moon, adds its light to all of these. [`TerrainPass`] draws ground of
-//! given heights, whose [`TerrainShadows`] darken air and fog; [`TerrainPoint`] finds what a ray sees of it.
+//! given heights, whose [`SunShadows`] darken air and fog; [`TerrainPoint`] finds what a ray sees of it.
 //!
 //! The eye is the origin, y is up at the eye, distances are in metres, light is in cd/m^2 times an exposure.
 
@@ -46,7 +46,7 @@ pub use passes::SkyPasses;
 #[cfg(not(target_arch = "wasm32"))]
 pub use read::{ReadTextureError, read_rgb, read_texture};
 pub use renderer::{SkyRenderer, SkyRendererSettings, Work};
-pub use shadows::TerrainShadows;
+pub use shadows::{ShadowMap, SunShadows};
 pub use terrain::{HeightField, TerrainPass, TerrainView};
 pub use terrain_point::TerrainPoint;
 pub use tone::{ToneCurve, TonePass, ToneSettings};

@@ -11,7 +11,7 @@ use crate::lights;
 use crate::pass::{
     CORNER, Pass, UNIFORM, bind_group, draw, group_layout, single, texture, uniform,
 };
-use crate::shadows::{self, TerrainShadows};
+use crate::shadows::{Caster, SunShadows};
 use crate::sky;
 use airlight::fog::lights::Light;
 use airlight_shaders::twins::lights::{ExponentialFog, LocalLight};
@@ -31,7 +31,7 @@ pub struct SkyPasses {
     fog_pass: Pass,
     light_pass: wgpu::RenderPipeline,
     /// Of shadows in air and in fog, once there are any.
-    shadow_passes: OnceLock<[wgpu::RenderPipeline; 2]>,
+    shadow_passes: [OnceLock<[wgpu::RenderPipeline; 2]>; Caster::ALL.len()],
     target_format: wgpu::TextureFormat,
     has_discs: bool,
     lights: Vec<LocalLight>,
@@ -96,7 +96,7 @@ impl SkyPasses {
                 (&light_shader(), "add"),
                 target_format,
             ),
-            shadow_passes: OnceLock::new(),
+            shadow_passes: [const { OnceLock::new() }; Caster::ALL.len()],
             target_format,
             has_discs: true,
             device: device.clone(),
@@ -184,8 +184,8 @@ impl SkyPasses {
         self.record_shadowed(encoder, target, depth, camera, None);
     }
 
-    /// As [`SkyPasses::record`], with the shadows of ground in air and fog: without the sunlight that these would scatter once where the
-    /// ground hides the sun. Light that is scattered more often, and that of a second source, have no shadows. Tables of a solver without
+    /// As [`SkyPasses::record`], with shadows in air and fog: without the sunlight that these would scatter once where the sun is
+    /// hidden. Light that is scattered more often, and that of a second source, have no shadows. Tables of a solver without
     /// [`SkySolver::with_shadows`](crate::SkySolver::with_shadows) have no shadows in air.
     pub fn record_shadowed(
         &self,
@@ -193,14 +193,14 @@ impl SkyPasses {
         target: &wgpu::TextureView,
         depth: &wgpu::TextureView,
         camera: &Camera,
-        shadows: Option<&TerrainShadows>,
+        shadows: Option<&SunShadows>,
     ) {
         if let Some(drawn) = &self.drawn {
             let passes = Passes {
                 sky: &self.sky_pass,
                 fog: &self.fog_pass,
                 lights: Some(&self.light_pass),
-                shadows: shadows.map(|shadows| (self.shadow_passes(), shadows)),
+                shadows: shadows.map(|shadows| (self.shadow_passes(shadows.caster()), shadows)),
             };
             self.draw(
                 drawn,
@@ -216,12 +216,13 @@ impl SkyPasses {
         }
     }
 
-    fn shadow_passes(&self) -> &[wgpu::RenderPipeline; 2] {
-        self.shadow_passes.get_or_init(|| {
-            let shadow_layout = shadows::layout(&self.device);
+    /// The passes of shadows of a caster, in air and in fog.
+    fn shadow_passes(&self, caster: Caster) -> &[wgpu::RenderPipeline; 2] {
+        self.shadow_passes[caster as usize].get_or_init(|| {
+            let shadow_layout = caster.layout(&self.device);
             [
-                (&self.sky_layout, shadows::in_air(sky_shader())),
-                (&self.fog_layout, shadows::in_fog(fog_shader())),
+                (&self.sky_layout, caster.in_air(&sky_shader())),
+                (&self.fog_layout, caster.in_fog(&fog_shader())),
             ]
             .map(|(first, shader)| {
                 let groups = [first, &self.frame_layout, &shadow_layout];
@@ -353,7 +354,7 @@ struct Passes<'a> {
     fog: &'a Pass,
     lights: Option<&'a wgpu::RenderPipeline>,
     /// Of shadows in air and in fog.
-    shadows: Option<(&'a [wgpu::RenderPipeline; 2], &'a TerrainShadows)>,
+    shadows: Option<(&'a [wgpu::RenderPipeline; 2], &'a SunShadows)>,
 }
 
 /// What passes know of their pixels.
@@ -405,8 +406,8 @@ mod tests {
         let row = format!("| lights | none | {add} |");
         assert!(readme.contains(&row), "{row}");
         for (shader, name) in [
-            (shadows::in_air(sky_shader()), "shadows in air"),
-            (shadows::in_fog(fog_shader()), "shadows in fog"),
+            (Caster::Ground.in_air(&sky_shader()), "shadows in air"),
+            (Caster::Ground.in_fog(&fog_shader()), "shadows in fog"),
         ] {
             let all = costs(&shader).unwrap();
             let (_, shade) = all.iter().find(|(name, _)| name == "shade").unwrap();

@@ -7,7 +7,7 @@ use crate::fog::Fog;
 use crate::frame_tables::{FrameTables, SkySolver, check};
 use crate::lighting::Lighting;
 use crate::passes::SkyPasses;
-use crate::shadows::TerrainShadows;
+use crate::shadows::SunShadows;
 use airlight::atmosphere::Atmosphere;
 use airlight::fog::lights::Light;
 use airlight::sky::{LightSource, Sky, SkySettings};
@@ -247,14 +247,14 @@ impl SkyRenderer {
         self.record_shadowed(encoder, target, depth, camera, None);
     }
 
-    /// As [`SkyRenderer::record`], with the shadows of ground in air and fog: see [`SkyPasses::record_shadowed`].
+    /// As [`SkyRenderer::record`], with shadows in air and fog: see [`SkyPasses::record_shadowed`].
     pub fn record_shadowed(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         target: &wgpu::TextureView,
         depth: &wgpu::TextureView,
         camera: &Camera,
-        shadows: Option<&TerrainShadows>,
+        shadows: Option<&SunShadows>,
     ) {
         let passes = &self.passes;
         passes.record_shadowed(encoder, target, depth, camera, shadows);

@@ -5,7 +5,7 @@ use crate::error::SkyRendererError;
 use crate::gpu_tables::{self, FLAT};
 use crate::lighting::{DirectLight, Lighting};
 use crate::pass::{CORNER, UNIFORM, bind_group, cover, covering, group_layout, uniform};
-use crate::shadows::TerrainShadows;
+use crate::shadows::SunShadows;
 use airlight::glam::DVec3;
 use airlight_shaders::twins::texture::Texture;
 use glam::{Vec3, Vec4};
@@ -300,7 +300,7 @@ impl TerrainPass {
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         view: &TerrainView,
-    ) -> Option<TerrainShadows> {
+    ) -> Option<SunShadows> {
         let sun = view.lighting.sun;
         let heights = self.heights.as_ref().filter(|_| sun.y > 0.0)?;
         let known = self.shadow_surface.take();
@@ -316,7 +316,7 @@ impl TerrainPass {
                 self.shadow_surface.insert((sun, target))
             }
         };
-        Some(TerrainShadows::new(
+        Some(SunShadows::of_ground(
             &self.device,
             (heights, &self.sampler),
             surface,

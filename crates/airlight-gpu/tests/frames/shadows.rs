@@ -1,4 +1,4 @@
-//! Shadows of ground in air and fog, against marches of the library's light in small steps, from each of which a ray leads to the sun.
+//! Shadows in air and fog, against marches of the library's light in small steps, from each of which a ray leads to the sun.
 
 use super::{draw, reference, rgb_of};
 use airlight::atmosphere::{Constituent, DensityProfile, Preset};
@@ -6,17 +6,25 @@ use airlight::axes;
 use airlight::fog::droplets::Droplets;
 use airlight::fog::{DirectionalLight, FogLighting, FogScattering, Ground, RgbFog, RgbLayer};
 use airlight::scene::RgbFoggySky;
-use airlight::sky::{Scattering, Sky, SkySettings, View};
+use airlight::sky::{Scattering, Sky, SkySettings, SplitView, View};
 use airlight::spectrum::RgbSpace;
 use airlight_gpu::headless::{FORMAT, Frame, Headless};
-use airlight_gpu::{Fog, HeightField, SkyRenderer, SkyRendererSettings, TerrainPass, TerrainView};
-use glam::{DVec3, Vec3};
+use airlight_gpu::{
+    Fog, HeightField, ShadowMap, SkyRenderer, SkyRendererSettings, SunShadows, TerrainPass,
+    TerrainView,
+};
+use glam::{DMat3, DVec3, Mat3, Mat4, Vec3};
 
 const AIR: Preset = Preset::Average;
 const SUN_DEG: f64 = 6.0;
 /// Place of the eye: east of the middle of the grid, above the ground, south, m.
 const EYE_M: DVec3 = DVec3::new(-3000.0, 300.0, 500.0);
 const STEPS: usize = 200;
+const EXPOSURE: f32 = 1e-4;
+
+fn sun() -> DVec3 {
+    axes::direction(90.0, SUN_DEG)
+}
 
 /// Heights with a ridge 7 km to the east of the eye, over which the sun stands.
 fn ridge() -> HeightField {
@@ -31,12 +39,12 @@ fn ridge() -> HeightField {
     HeightField::new([SIDE; 2], [SPACING_M; 2], places.map(height).collect()).unwrap()
 }
 
-/// Whether a point, m around the eye, is in sunlight.
-fn is_lit(field: &HeightField, planet_radius_m: f64, point: DVec3, sun: DVec3) -> bool {
+/// Whether a point, m around the eye, is in sunlight over the ground of a planet.
+fn is_above_shadow(field: &HeightField, planet_radius_m: f64, point: DVec3) -> bool {
     let highest_m = f64::from(field.highest_m());
     let mut here_m = 0.0;
     loop {
-        let at = point + sun * here_m;
+        let at = point + sun() * here_m;
         let height_m = EYE_M.y + at.y + (at.x * at.x + at.z * at.z) / (2.0 * planet_radius_m);
         if height_m > highest_m {
             return true;
@@ -48,31 +56,212 @@ fn is_lit(field: &HeightField, planet_radius_m: f64, point: DVec3, sun: DVec3) -
     }
 }
 
-/// Distances up to which steps along a ray lead: even in the square root.
-fn distances_m(length_m: f64) -> impl Iterator<Item = f64> {
-    (0..=STEPS).map(move |k| length_m * (k as f64 / STEPS as f64).powi(2))
+/// A disc that faces the sun, 250 m from the eye and 150 m in radius, and what a shadow map shows of it.
+struct Disc {
+    middle: DVec3,
+    radius_m: f64,
 }
 
-/// Light that a shadow takes away along a ray, from the light that is scattered once up to each of its distances.
-fn lost(
-    field: &HeightField,
-    view: &View,
-    direction: DVec3,
-    length_m: f64,
-    once: &[[f64; 3]],
-) -> [f64; 3] {
-    let (planet_radius_m, _) = view.bounds_m();
-    let distances_m: Vec<f64> = distances_m(length_m).collect();
-    let mut lost = [0.0; 3];
-    for (step, of) in distances_m.windows(2).zip(once.windows(2)) {
-        let middle = direction * (0.5 * (step[0] + step[1]));
-        if !is_lit(field, planet_radius_m, middle, view.sun()) {
-            for c in 0..3 {
-                lost[c] += of[1][c] - of[0][c];
-            }
+impl Disc {
+    /// Half the width of the map, and half its depth, m.
+    const HALF_M: [f64; 2] = [450.0, 1000.0];
+    const SIDE: u32 = 1024;
+
+    fn new() -> Self {
+        Self {
+            middle: axes::direction(60.0, 25.0) * 250.0,
+            radius_m: 150.0,
         }
     }
-    lost
+
+    /// Right, up and towards the sun.
+    fn axes() -> DMat3 {
+        let across = sun().cross(DVec3::Y).normalize();
+        DMat3::from_cols(across, across.cross(sun()), sun())
+    }
+
+    fn is_lit(&self, point: DVec3) -> bool {
+        let behind = Self::axes().transpose() * (point - self.middle);
+        behind.z > 0.0 || behind.truncate().length() > self.radius_m
+    }
+
+    fn clip_from_world(&self) -> Mat4 {
+        let [half_m, depth_m] = Self::HALF_M;
+        let turn = Mat4::from_mat3(Mat3::from_cols_array(
+            &Self::axes().transpose().to_cols_array().map(|v| v as f32),
+        ));
+        let scale = Vec3::new(
+            1.0 / half_m as f32,
+            1.0 / half_m as f32,
+            -0.5 / depth_m as f32,
+        );
+        Mat4::from_translation(Vec3::new(0.0, 0.0, 0.5)) * Mat4::from_scale(scale) * turn
+    }
+
+    /// Depths that increase away from the sun.
+    fn map(&self, gpu: &Headless) -> wgpu::TextureView {
+        let texel_m = 2.0 * Self::HALF_M[0] / f64::from(Self::SIDE);
+        let middle = Self::axes().transpose() * self.middle;
+        let depth = |k: u32| {
+            let at = |n: u32| (f64::from(n) + 0.5) * texel_m - Self::HALF_M[0];
+            let (x, y) = (at(k % Self::SIDE), -at(k / Self::SIDE));
+            match (x - middle.x).hypot(y - middle.y) < self.radius_m {
+                true => (0.5 - 0.5 * middle.z / Self::HALF_M[1]) as f32,
+                false => 1.0,
+            }
+        };
+        let depths = (0..Self::SIDE * Self::SIDE).map(depth);
+        let bytes: Vec<u8> = depths.flat_map(f32::to_ne_bytes).collect();
+        let size = wgpu::Extent3d {
+            width: Self::SIDE,
+            height: Self::SIDE,
+            depth_or_array_layers: 1,
+        };
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::R32Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(4 * Self::SIDE),
+            rows_per_image: None,
+        };
+        gpu.queue
+            .write_texture(texture.as_image_copy(), &bytes, layout, size);
+        texture.create_view(&Default::default())
+    }
+}
+
+/// Distances up to which steps along a ray lead: even in the square root.
+fn distances_m(length_m: f64) -> Vec<f64> {
+    let place = |k: usize| (k as f64 / STEPS as f64).powi(2);
+    (0..=STEPS)
+        .map(|k| (length_m * place(k)).max(1e-3))
+        .collect()
+}
+
+/// The library's light, at sixteen wavelengths.
+struct Truth {
+    view: View,
+    split: SplitView,
+    single: SplitView,
+    foggy: RgbFoggySky,
+    fog: RgbFog,
+    layer: RgbLayer,
+}
+
+impl Truth {
+    fn new() -> Self {
+        let view = reference(AIR, SUN_DEG, EYE_M.y, sun());
+        let settings = SkySettings {
+            scattering: Scattering::Single,
+            ..super::settings(SUN_DEG, EYE_M.y)
+        };
+        let single = Sky::prepare(&AIR.atmosphere(), view.sky().grid(), &settings).unwrap();
+        let density = DensityProfile::exponential(150.0);
+        let layer = Constituent::fog(0.002, Droplets::default().into(), density, &[]).unwrap();
+        let layers = [layer];
+        let (all, space) = (FogScattering::Multiple, RgbSpace::Srgb);
+        let foggy = RgbFoggySky::new(&view, &layers, all, space).unwrap();
+        let layer = RgbLayer::from_constituent(&layers[0], space).unwrap();
+        let lighting = FogLighting {
+            sun: Some(DirectionalLight {
+                direction: sun(),
+                // At the top of the fog.
+                irradiance: foggy.sun_irradiance(700.0),
+            }),
+            ambient: [0.0; 3],
+            ground_albedo: [0.1; 3],
+        };
+        let layers = std::slice::from_ref(&layer);
+        Self {
+            split: view.split(),
+            single: single.view(EYE_M.y, sun()).split(),
+            fog: RgbFog::new(layers, Ground::FLAT, &lighting, all).unwrap(),
+            foggy,
+            layer,
+            view,
+        }
+    }
+
+    /// Light that air scatters once up to distances along a ray; what haze scatters by small angles on the way still counts as sunlight.
+    fn once_in_air(&self, direction: DVec3, stops_m: &[f64]) -> Vec<[f64; 3]> {
+        let phase = self.split.phase(direction.dot(sun()));
+        let views = [&self.split, &self.single];
+        let [all, once] = views.map(|split| split.paths(&[direction], stops_m));
+        let light = all[0].iter().zip(&once[0]).map(|(all, once)| {
+            let haze = all
+                .peaked
+                .iter()
+                .zip(&phase)
+                .map(|(light, phase)| light * phase);
+            let light: Vec<f32> = once.smooth.iter().zip(haze).map(|(a, b)| a + b).collect();
+            rgb_of(self.view.sky().grid(), &light)
+        });
+        light.collect()
+    }
+
+    /// Light that fog scatters once up to distances along a ray, each step behind the air before it.
+    fn once_in_fog(&self, direction: DVec3, stops_m: &[f64]) -> Vec<[f64; 3]> {
+        let table = self.fog.seen_from(EYE_M.y);
+        let streams = table.sun_streams(direction.dot(sun()));
+        let parts = table.parts(direction.y, stops_m).unwrap();
+        let alone = parts.iter().zip(stops_m).map(|(parts, &m)| {
+            let transmittance = self.fog.path(EYE_M.y, direction, m).transmittance;
+            std::array::from_fn(|c| {
+                let each = parts.streams.iter().zip(&streams);
+                let source: f32 = each.map(|(light, phase)| light[c] * phase[c]).sum();
+                f64::from(source * (1.0 - transmittance[c]))
+            })
+        });
+        let alone: Vec<[f64; 3]> = alone.collect();
+        let mut sums = vec![[0.0f64; 3]];
+        for (steps, stops_m) in alone.windows(2).zip(stops_m.windows(2)) {
+            let middle_m = 0.5 * (stops_m[0] + stops_m[1]);
+            let air = self.foggy.clear_path(direction, middle_m).transmittance;
+            let before = sums[sums.len() - 1];
+            let step = |c: usize| f64::from(air[c]) * (steps[1][c] - steps[0][c]);
+            sums.push(std::array::from_fn(|c| before[c] + step(c)));
+        }
+        sums
+    }
+
+    /// Light that shadows take away along a ray, without and with the fog.
+    fn lost(
+        &self,
+        direction: DVec3,
+        length_m: f64,
+        is_lit: &dyn Fn(DVec3) -> bool,
+    ) -> [[f64; 3]; 2] {
+        let stops_m = distances_m(length_m);
+        let once = [
+            self.once_in_air(direction, &stops_m),
+            self.once_in_fog(direction, &stops_m),
+        ];
+        let mut lost = [[0.0; 3]; 2];
+        for (k, step_m) in stops_m.windows(2).enumerate() {
+            if !is_lit(direction * (0.5 * (step_m[0] + step_m[1]))) {
+                for (lost, once) in lost.iter_mut().zip(&once) {
+                    for c in 0..3 {
+                        lost[c] += once[k + 1][c] - once[k][c];
+                    }
+                }
+            }
+        }
+        let [air, fog] = lost;
+        let through = self
+            .fog
+            .path(EYE_M.y, direction, f64::INFINITY)
+            .transmittance;
+        let both = std::array::from_fn(|c| fog[c] + f64::from(through[c]) * air[c]);
+        [air, both]
+    }
 }
 
 struct Scene {
@@ -102,9 +291,17 @@ impl Scene {
         }
     }
 
-    /// What the shadows take from each pixel without geometry.
-    fn lost(&mut self, sun: DVec3) -> (Vec<Vec3>, Vec<Vec3>) {
-        const EXPOSURE: f32 = 1e-4;
+    fn set_fog(&mut self, layer: Option<&RgbLayer>) {
+        let fog = layer.map(|layer| Fog {
+            layer: layer.clone(),
+            ground_height_m: 0.0,
+            ground_albedo: [0.1; 3],
+        });
+        self.renderer.set_fog(fog).unwrap();
+    }
+
+    /// What shadows take from each pixel without geometry, and its light without shadows: those of the ground, or of a disc.
+    fn lost(&mut self, sun: DVec3, disc: Option<&Disc>) -> Vec<[Vec3; 2]> {
         self.renderer.update(EYE_M.y, sun).unwrap();
         let view = TerrainView {
             eye_m: EYE_M,
@@ -115,161 +312,93 @@ impl Scene {
         };
         let lit = draw(&self.gpu, &mut self.renderer, &self.frame, EXPOSURE, None);
         let camera = self.frame.camera(EXPOSURE);
+        let of_disc = disc.map(|disc| {
+            let map = ShadowMap {
+                depth: &disc.map(&self.gpu),
+                size: [Disc::SIDE; 2],
+                clip_from_world: disc.clip_from_world(),
+                is_reversed: false,
+                reach_m: 800.0,
+            };
+            SunShadows::from_map(&self.gpu.device, &map)
+        });
         let (renderer, terrain) = (&mut self.renderer, &mut self.terrain);
         let shaded = self.gpu.draw(&self.frame, None, |encoder, target, depth| {
-            let shadows = terrain.shadows(encoder, &view);
+            let of_ground = || terrain.shadows(encoder, &view);
+            let shadows = of_disc.or_else(of_ground);
             renderer.record_shadowed(encoder, target, depth, &camera, shadows.as_ref());
         });
-        let lit: Vec<Vec3> = lit
-            .into_iter()
-            .map(|rgb| Vec3::from(rgb) / EXPOSURE)
-            .collect();
-        let shaded = shaded
-            .unwrap()
-            .into_iter()
-            .map(|rgb| Vec3::from(rgb) / EXPOSURE);
-        (
-            lit.iter()
-                .zip(shaded)
-                .map(|(lit, shaded)| lit - shaded)
-                .collect(),
-            lit,
-        )
+        let pairs = lit.into_iter().zip(shaded.unwrap());
+        let pairs = pairs.map(|(lit, shaded)| [lit, shaded].map(|rgb| Vec3::from(rgb) / EXPOSURE));
+        pairs.map(|[lit, shaded]| [lit - shaded, lit]).collect()
     }
 
     fn direction(&self, k: usize) -> DVec3 {
         let (x, y) = (k as u32 % self.frame.side, k as u32 / self.frame.side);
         self.frame.direction(x, y).as_dvec3().normalize()
     }
-}
 
-/// Luminance that shadows take away, relative to the luminance with no shadow: the largest, and the root mean square and the largest of its error.
-fn compared(pixels: impl Iterator<Item = (Vec3, [f64; 3], Vec3)>) -> [f64; 3] {
-    let luminance = |rgb: [f64; 3]| RgbSpace::Srgb.luminance(rgb);
-    let of = |rgb: Vec3| luminance(rgb.to_array().map(f64::from));
-    let [mut most, mut squares, mut worst, mut count] = [0.0f64; 4];
-    for (got, right, lit) in pixels {
-        let right = luminance(right) / of(lit);
-        let error = (of(got) / of(lit) - right).abs();
-        most = most.max(right);
-        squares += error * error;
-        worst = worst.max(error);
-        count += 1.0;
+    /// Compares what shadows take away without and with fog, relative to the luminance without shadows: for each the largest, and
+    /// the root mean square and the largest of the error.
+    fn compared(
+        &mut self,
+        truth: &Truth,
+        length_m: f64,
+        disc: Option<&Disc>,
+        is_lit: &dyn Fn(DVec3) -> bool,
+    ) -> [[f64; 3]; 2] {
+        self.set_fog(None);
+        let in_air = self.lost(sun(), disc);
+        self.set_fog(Some(&truth.layer));
+        let in_fog = self.lost(sun(), disc);
+        let luminance = |rgb: [f64; 3]| RgbSpace::Srgb.luminance(rgb);
+        let of = |rgb: Vec3| luminance(rgb.to_array().map(f64::from));
+        let mut all = [[0.0f64; 3]; 2];
+        let count = in_air.len() as f64;
+        for k in 0..in_air.len() {
+            let right = truth.lost(self.direction(k), length_m, is_lit);
+            for (([got, lit], right), sums) in
+                [in_air[k], in_fog[k]].into_iter().zip(right).zip(&mut all)
+            {
+                let right = luminance(right) / of(lit);
+                let error = (of(got) / of(lit) - right).abs();
+                sums[0] = sums[0].max(right);
+                sums[1] += error * error / count;
+                sums[2] = sums[2].max(error);
+            }
+        }
+        all.map(|[most, squares, worst]| [most, squares.sqrt(), worst])
     }
-    [most, (squares / count).sqrt(), worst]
 }
 
 #[test]
 fn ground_throws_shadows_into_air_and_fog() {
-    let sun = axes::direction(90.0, SUN_DEG);
     let field = ridge();
-    let mut scene = Scene::new();
-    let view = reference(AIR, SUN_DEG, EYE_M.y, sun);
-    let grid = view.sky().grid();
-    let settings = SkySettings {
-        scattering: Scattering::Single,
-        ..super::settings(SUN_DEG, EYE_M.y)
-    };
-    let single = Sky::prepare(&AIR.atmosphere(), grid, &settings).unwrap();
-    let (split, single) = (view.split(), single.view(EYE_M.y, sun).split());
-    const LENGTH_M: f64 = 1e5;
-    let (in_air, lit) = scene.lost(sun);
-    let air_right: Vec<[f64; 3]> = (0..in_air.len())
-        .map(|k| {
-            let direction = scene.direction(k);
-            // What haze scatters by small angles on the way still counts as sunlight.
-            let stops_m: Vec<f64> = distances_m(LENGTH_M).map(|m| m.max(1e-3)).collect();
-            let phase = split.phase(direction.dot(sun));
-            let [all, once] = [&split, &single].map(|split| split.paths(&[direction], &stops_m));
-            let once = all[0].iter().zip(&once[0]).map(|(all, once)| {
-                let haze = all
-                    .peaked
-                    .iter()
-                    .zip(&phase)
-                    .map(|(light, phase)| light * phase);
-                let light: Vec<f32> = once.smooth.iter().zip(haze).map(|(a, b)| a + b).collect();
-                rgb_of(grid, &light)
-            });
-            let once: Vec<[f64; 3]> = once.collect();
-            lost(&field, &view, direction, LENGTH_M, &once)
-        })
-        .collect();
-    let pixels = in_air.iter().zip(&air_right).zip(&lit);
-    let [most, rms, worst] = compared(pixels.map(|((got, right), lit)| (*got, *right, *lit)));
-    println!("air: shadows up to {most:.3} of the light, error {rms:.4}, worst {worst:.4}");
-    assert!(
-        most > 0.5 && rms < 0.005 && worst < 0.025,
-        "{most} {rms} {worst}"
-    );
-
-    let density = DensityProfile::exponential(150.0);
-    let layer = Constituent::fog(0.002, Droplets::default().into(), density, &[]).unwrap();
-    let layers = [layer];
-    let foggy = RgbFoggySky::new(&view, &layers, FogScattering::Multiple, RgbSpace::Srgb).unwrap();
-    let layer = RgbLayer::from_constituent(&layers[0], RgbSpace::Srgb).unwrap();
-    scene
-        .renderer
-        .set_fog(Some(Fog {
-            layer: layer.clone(),
-            ground_height_m: 0.0,
-            ground_albedo: [0.1; 3],
-        }))
-        .unwrap();
-    // The sunlight at the top of the fog.
-    let lighting = FogLighting {
-        sun: Some(DirectionalLight {
-            direction: sun,
-            irradiance: foggy.sun_irradiance(700.0),
-        }),
-        ambient: [0.0; 3],
-        ground_albedo: [0.1; 3],
-    };
-    let fog = RgbFog::new(&[layer], Ground::FLAT, &lighting, FogScattering::Multiple).unwrap();
-    let table = fog.seen_from(EYE_M.y);
-    let (in_fog, lit) = scene.lost(sun);
-    let fog_right = (0..in_fog.len()).map(|k| {
-        let direction = scene.direction(k);
-        let stops_m: Vec<f64> = distances_m(LENGTH_M).map(|m| m.max(1e-3)).collect();
-        let streams = table.sun_streams(direction.dot(sun));
-        let parts = table.parts(direction.y, &stops_m).unwrap();
-        let once = parts.iter().zip(&stops_m).map(|(parts, &m)| {
-            let transmittance = fog.path(EYE_M.y, direction, m).transmittance;
-            std::array::from_fn(|c| {
-                let source: f32 = (0..streams.len())
-                    .map(|stream| parts.streams[stream][c] * streams[stream][c])
-                    .sum();
-                f64::from(source * (1.0 - transmittance[c]))
-            })
-        });
-        let once: Vec<[f64; 3]> = once.collect();
-        // Each step behind the air before it.
-        let mut through_air = vec![[0.0; 3]];
-        for (steps, stops_m) in once.windows(2).zip(stops_m.windows(2)) {
-            let middle_m = 0.5 * (stops_m[0] + stops_m[1]);
-            let air = foggy.clear_path(direction, middle_m).transmittance;
-            let before = through_air[through_air.len() - 1];
-            through_air.push(std::array::from_fn(|c| {
-                before[c] + f64::from(air[c]) * (steps[1][c] - steps[0][c])
-            }));
-        }
-        let of_fog = lost(&field, &view, direction, LENGTH_M, &through_air);
-        let through = fog.path(EYE_M.y, direction, f64::INFINITY).transmittance;
-        std::array::from_fn(|c| of_fog[c] + f64::from(through[c]) * air_right[k][c])
-    });
-    let pixels = in_fog.iter().zip(fog_right).zip(&lit);
-    let [most, rms, worst] = compared(pixels.map(|((got, right), lit)| (*got, right, *lit)));
-    println!("fog: shadows up to {most:.3} of the light, error {rms:.4}, worst {worst:.4}");
-    assert!(
-        most > 0.2 && rms < 0.01 && worst < 0.04,
-        "{most} {rms} {worst}"
-    );
+    let truth = Truth::new();
+    let (planet_radius_m, _) = truth.view.bounds_m();
+    let is_lit = |point| is_above_shadow(&field, planet_radius_m, point);
+    let [air, fog] = Scene::new().compared(&truth, 1e5, None, &is_lit);
+    println!("shadows, error, worst: air {air:.4?}, fog {fog:.4?}");
+    assert!(air[0] > 0.5 && air[1] < 0.005 && air[2] < 0.025);
+    assert!(fog[0] > 0.5 && fog[1] < 0.01 && fog[2] < 0.04);
 }
 
-/// Shadows need no tables of their own where none are drawn, and are found once for each sun.
+/// A disc between fog and sun, whose shadow is a beam of darkness.
+#[test]
+fn what_a_shadow_map_shows_throws_shadows() {
+    let truth = Truth::new();
+    let disc = Disc::new();
+    let is_lit = |point| disc.is_lit(point);
+    let [air, fog] = Scene::new().compared(&truth, 800.0, Some(&disc), &is_lit);
+    println!("shadows, error, worst: air {air:.4?}, fog {fog:.4?}");
+    assert!(air[0] > 0.02 && air[1] < 0.001 && air[2] < 0.003);
+    assert!(fog[0] > 0.1 && fog[1] < 0.003 && fog[2] < 0.01);
+}
+
+/// Shadows need no tables of their own where none are drawn; there are none of a sun that is down, nor before the first heights.
 #[test]
 fn without_shadows_frames_are_the_same() {
     let gpu = Headless::new().unwrap();
-    let sun = axes::direction(90.0, SUN_DEG);
     let frame = Frame::towards(Vec3::X, 16);
     let drawn = |shadows: bool| {
         let settings = SkyRendererSettings {
@@ -279,15 +408,13 @@ fn without_shadows_frames_are_the_same() {
         };
         let air = AIR.atmosphere();
         let mut renderer = SkyRenderer::new(&gpu.device, &gpu.queue, &air, &settings).unwrap();
-        renderer.update(2.0, sun).unwrap();
-        draw(&gpu, &mut renderer, &frame, 1e-4, None)
+        renderer.update(2.0, sun()).unwrap();
+        draw(&gpu, &mut renderer, &frame, EXPOSURE, None)
     };
     assert!(drawn(true) == drawn(false));
-    // No shadows of a sun that is down, nor before the first heights.
     let mut scene = Scene::new();
-    let (lost, _) = scene.lost(axes::direction(90.0, -2.0));
-    assert!(lost.iter().all(|lost| *lost == Vec3::ZERO));
+    let is_none = |lost: Vec<[Vec3; 2]>| lost.iter().all(|[lost, _]| *lost == Vec3::ZERO);
+    assert!(is_none(scene.lost(axes::direction(90.0, -2.0), None)));
     scene.terrain = TerrainPass::new(&scene.gpu.device, &scene.gpu.queue, FORMAT);
-    let (lost, _) = scene.lost(sun);
-    assert!(lost.iter().all(|lost| *lost == Vec3::ZERO));
+    assert!(is_none(scene.lost(sun(), None)));
 }
