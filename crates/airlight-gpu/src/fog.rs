@@ -14,6 +14,7 @@ use airlight_shaders::twins::fog::{
 };
 use airlight_shaders::twins::fog_table::{FogTableView, tabulated_fog};
 use airlight_shaders::twins::lights::ExponentialFog;
+use airlight_shaders::twins::path_optics::{PathOptics, apply_path_optics};
 use airlight_shaders::twins::texture::LinearSampler;
 use airlight_shaders::{FogTables, SkyTables};
 use glam::Vec3;
@@ -185,6 +186,11 @@ pub struct FogFrame {
 impl FogFrame {
     /// Light of a direction behind the fog, for an eye that sees no geometry.
     pub(crate) fn in_front_of(&self, behind: Vec3, direction: Vec3) -> Vec3 {
+        apply_path_optics(self.path(direction), behind)
+    }
+
+    /// Fog along a direction up to the ground or through all of it.
+    pub(crate) fn path(&self, direction: Vec3) -> PathOptics {
         let length_m = match direction.y < 0.0 {
             true => (self.eye_height_m / -direction.y).min(INFINITE_M),
             false => INFINITE_M,
@@ -193,7 +199,7 @@ impl FogFrame {
         let column_m = fog_layer_column_m(self.layer, ray);
         let depth = (self.layer.extinction_per_m * column_m).min(Vec3::splat(OPAQUE));
         let tables = &self.tables;
-        let path = tabulated_fog(
+        tabulated_fog(
             tables.view,
             &tables.diffuse,
             &tables.streams,
@@ -201,8 +207,7 @@ impl FogFrame {
             LinearSampler,
             direction,
             depth,
-        );
-        path.transmittance * behind + path.path_radiance
+        )
     }
 
     /// Uploads the tables: for all light of the fog, and for the sunlight that it scatters once.

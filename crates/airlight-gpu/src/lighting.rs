@@ -1,9 +1,7 @@
 //! [`Lighting`].
 
-use airlight::fog::RgbFog;
 use airlight::glam::DVec3;
 use airlight::sky::SkyTable;
-use airlight::transfer::RgbPathOptics;
 use airlight_shaders::SkyTables;
 use airlight_shaders::twins::colour::rgb_from_spectrum;
 use glam::{Vec3, Vec4};
@@ -91,30 +89,12 @@ impl Lighting {
         }
     }
 
-    /// This light behind a fog, for an eye at a height, m: the sun dimmed, and the light that the fog scatters besides the radiance of
-    /// sky and ground that it lets through.
-    pub(crate) fn in_fog(
-        &self,
-        fog: &RgbFog,
-        height_m: f64,
-        radiance: impl Fn(Vec3) -> Vec3,
-    ) -> Self {
-        let eye_m = height_m.max(fog.ground().height_m);
-        let seen = fog.seen_from(eye_m);
-        let rays = around(self.sun.as_dvec3());
-        let (directions, weights): (Vec<DVec3>, Vec<f64>) = rays.unzip();
-        let length_m = |direction: &DVec3| match direction.y < 0.0 {
-            true => (eye_m - fog.ground().height_m) / -direction.y,
-            false => f64::INFINITY,
-        };
-        let lengths_m: Vec<f64> = directions.iter().map(length_m).collect();
-        let mut paths = vec![RgbPathOptics::CLEAR; directions.len()];
-        seen.paths(&directions, &lengths_m, &mut paths);
+    /// This light in a fog: the sun dimmed by its transmittance, and all other light from the radiance in the fog along unit vectors.
+    pub(crate) fn in_fog(&self, to_sun: Vec3, radiance: impl Fn(Vec3) -> Vec3) -> Self {
         let mut sky_coefficients_lx = [Vec3::ZERO; 9];
-        for ((direction, weight), path) in directions.iter().zip(weights).zip(paths) {
+        for (direction, weight) in around(self.sun.as_dvec3()) {
             let direction = direction.as_vec3();
-            let behind = radiance(direction) * Vec3::from_array(path.transmittance);
-            let light = (behind + Vec3::from_array(path.path_radiance)) * weight as f32;
+            let light = radiance(direction) * weight as f32;
             let values = polynomials(direction);
             let factors = MEAN_SQUARES.iter().zip(COSINE_FACTORS);
             for ((out, value), (square, factor)) in
@@ -123,9 +103,8 @@ impl Lighting {
                 *out += light * (factor as f32 * value / square);
             }
         }
-        let to_sun = seen.path(self.sun.as_dvec3(), f64::INFINITY).transmittance;
         Self {
-            sun_illuminance_lx: self.sun_illuminance_lx * Vec3::from_array(to_sun),
+            sun_illuminance_lx: self.sun_illuminance_lx * to_sun,
             sky_coefficients_lx,
             ..*self
         }
@@ -215,7 +194,7 @@ mod tests {
     use airlight::atmosphere::DensityProfile;
     use airlight::axes;
     use airlight::fog::droplets::Droplets;
-    use airlight::fog::{DirectionalLight, FogLighting, FogScattering, Ground, RgbLayer};
+    use airlight::fog::{DirectionalLight, FogLighting, FogScattering, Ground, RgbFog, RgbLayer};
 
     /// An even sky, with which the library's fog is lit, too: what falls on the ground below. Thin fog under a low sun is left out:
     /// harmonics of degree 2 cannot follow its glow.
@@ -245,8 +224,16 @@ mod tests {
             };
             let fog = RgbFog::new(&[layer], Ground::FLAT, &light, FogScattering::Multiple);
             let fog = fog.unwrap();
-            let even = |d: Vec3| Vec3::splat(if d.y > 0.0 { sky } else { 0.0 });
-            let below = lighting.in_fog(&fog, 0.0, even);
+            let to_end = |d: Vec3| {
+                let length_m = if d.y > 0.0 { f64::INFINITY } else { 0.0 };
+                fog.path(0.0, d.as_dvec3().normalize(), length_m)
+            };
+            let even = |d: Vec3| {
+                let behind = if d.y > 0.0 { sky } else { 0.0 };
+                Vec3::from_array(to_end(d).apply([behind; 3]))
+            };
+            let to_sun = Vec3::from_array(to_end(lighting.sun).transmittance);
+            let below = lighting.in_fog(to_sun, even);
             let got =
                 below.sun_illuminance_lx.y * lighting.sun.y + below.sky_illuminance_lx(Vec3::Y).y;
             let error = got / fog.ground_irradiance().unwrap()[1] - 1.0;
