@@ -3,13 +3,14 @@
 //! A file of `data/optics/drops` begins with lines of text, which state what it holds and end with an empty line. Numbers
 //! follow in little-endian order: the counts of angles and of wavelengths (`u16`); the angles in degrees (`f32`); and for each
 //! wavelength the wavelength (`f32`, nm), the cross-sections of scattering and absorption (um^2) and the asymmetry (`f64`), the
-//! least and the greatest `ln p` (`f32`), `ln p` at the angles in steps of 1 / 65535 of that range (`u16`), and `f12`, `f33`
-//! and `f34` relative to `p` in steps of 1 / 127 (`i8`).
+//! least and the greatest `ln p` (`f32`), and codes at the angles: `ln p` in steps of 1 / 65535 of that range, then `f12`, `f33` and `f34`
+//! relative to `p` in steps of 1 / 127. Codes are stored as [`differences`] from those of the wavelength before, which compress to half
+//! the size: of `ln p` first all high bytes, then all low bytes, with the sign in the lowest bit ([`sign_last`]); of the others `i8`.
 
 use super::droplets::Drops;
 use super::shared::GREEN_NM;
 use super::{BulkOptics, DropTable, MieError, Particles};
-use crate::optics::TabulatedPhase;
+use crate::optics::{MatrixRatios, TabulatedPhase};
 
 /// Wavelengths of the embedded tables, nm: those of the grids `rgb`, `fast` and `standard`, those that stand for red, green and
 /// blue, and the one for which visibility is defined.
@@ -95,6 +96,7 @@ struct Row {
 fn write(source: &str, phase: &TabulatedPhase, bulk: &[BulkOptics]) -> Vec<u8> {
     let angles = phase.angles_rad();
     let mut file = format!("{source}\n\n").into_bytes();
+    let mut before = Codes::zero(angles.len());
     for count in [angles.len(), bulk.len()] {
         file.extend((count as u16).to_le_bytes());
     }
@@ -120,18 +122,81 @@ fn write(source: &str, phase: &TabulatedPhase, bulk: &[BulkOptics]) -> Vec<u8> {
         file.extend(low.to_le_bytes());
         file.extend(high.to_le_bytes());
         let [low, high] = [low, high].map(f64::from);
-        for log in logs {
-            let code = (LOG_STEPS * (log - low) / (high - low)).round();
-            file.extend((code as u16).to_le_bytes());
+        let log_code = |log: &f64| (LOG_STEPS * (log - low) / (high - low)).round() as i32;
+        let ratios: Vec<_> = angles
+            .iter()
+            .map(|a| phase.matrix_ratios(a.cos(), nm))
+            .collect();
+        let ratio_codes = |element: fn(&MatrixRatios) -> f64| {
+            let code = |ratios| (RATIO_STEPS * element(ratios)).round() as i32;
+            ratios.iter().map(code).collect()
+        };
+        let codes = Codes {
+            logs: logs.iter().map(log_code).collect(),
+            ratios: [
+                ratio_codes(|of| of.f12),
+                ratio_codes(|of| of.f33),
+                ratio_codes(|of| of.f34),
+            ],
+        };
+        let steps = differences(&codes.logs, &before.logs).map(|step| sign_last(step as i16));
+        let (high, low): (Vec<u8>, Vec<u8>) = steps
+            .map(u16::to_be_bytes)
+            .map(|[high, low]| (high, low))
+            .unzip();
+        file.extend(high);
+        file.extend(low);
+        for (codes, before) in codes.ratios.iter().zip(&before.ratios) {
+            file.extend(differences(codes, before).map(|step| step as u8));
         }
-        for angle in angles {
-            let ratios = phase.matrix_ratios(angle.cos(), nm);
-            for ratio in [ratios.f12, ratios.f33, ratios.f34] {
-                file.extend(((RATIO_STEPS * ratio).round() as i8).to_le_bytes());
-            }
-        }
+        before = codes;
     }
     file
+}
+
+/// Codes of a row at the angles: `ln p`, `f12`, `f33` and `f34`.
+struct Codes {
+    logs: Vec<i32>,
+    ratios: [Vec<i32>; 3],
+}
+
+impl Codes {
+    /// The row before the first one.
+    fn zero(angles: usize) -> Self {
+        Self {
+            logs: vec![0; angles],
+            ratios: [(); 3].map(|()| vec![0; angles]),
+        }
+    }
+}
+
+/// Differences of codes from those before at the same angles, each less that at the angle before: small numbers for smooth tables.
+fn differences(codes: &[i32], before: &[i32]) -> impl Iterator<Item = i32> {
+    let changes = codes.iter().zip(before).map(|(code, before)| code - before);
+    changes.scan(0, |last, change| {
+        let step = change - *last;
+        *last = change;
+        Some(step)
+    })
+}
+
+/// The codes that have [`differences`] from those before, but for the bits that the differences have lost.
+fn sums(steps: impl Iterator<Item = i32>, before: &[i32]) -> impl Iterator<Item = i32> {
+    let changes = steps.scan(0, |change: &mut i32, step| {
+        *change += step;
+        Some(*change)
+    });
+    changes.zip(before).map(|(change, before)| before + change)
+}
+
+/// A number with its sign as the lowest bit, so that small ones of both signs have no high bits: 0, -1, 1, -2 become 0, 1, 2, 3.
+fn sign_last(number: i16) -> u16 {
+    ((number << 1) ^ (number >> 15)) as u16
+}
+
+/// The number of [`sign_last`].
+fn sign_first(code: u16) -> i16 {
+    (code >> 1) as i16 ^ -((code & 1) as i16)
 }
 
 /// Reads what [`write`] has written. Panics where an embedded table is cut short, which the tests exclude.
@@ -142,18 +207,35 @@ fn read(file: &[u8], volume_um3: f64) -> Stored {
     let angles_deg = (0..angles)
         .map(|_| f64::from(f32::from_le_bytes(take(&mut rest))))
         .collect();
+    let mut before = Codes::zero(angles);
     let row = |_| {
         let wavelength_nm = f64::from(f32::from_le_bytes(take(&mut rest)));
         let [scattering_um2, absorption_um2, asymmetry] =
             [(); 3].map(|()| f64::from_le_bytes(take(&mut rest)));
         let [low, high] = [(); 2].map(|()| f64::from(f32::from_le_bytes(take(&mut rest))));
-        let code = |_| f64::from(u16::from_le_bytes(take(&mut rest)));
-        let values = (0..angles)
-            .map(code)
-            .map(|code| (low + (high - low) * code / LOG_STEPS).exp())
-            .collect();
-        let mut element = |()| f64::from(i8::from_le_bytes(take(&mut rest))) / RATIO_STEPS;
-        let ratios = (0..angles).map(|_| [(); 3].map(&mut element)).collect();
+        let [high_bytes, low_bytes, f12, f33, f34] = [(); 5].map(|()| {
+            let (bytes, others) = rest.split_at(angles);
+            rest = others;
+            bytes
+        });
+        let steps = high_bytes.iter().zip(low_bytes);
+        let steps = steps.map(|(high, low)| sign_first(u16::from_be_bytes([*high, *low])));
+        let logs = sums(steps.map(i32::from), &before.logs).map(|code| i32::from(code as u16));
+        let elements = [f12, f33, f34];
+        let ratios = std::array::from_fn(|k| {
+            let steps = elements[k].iter().map(|step| i32::from(*step as i8));
+            let codes = sums(steps, &before.ratios[k]).map(|code| i32::from(code as i8));
+            codes.collect()
+        });
+        before = Codes {
+            logs: logs.collect(),
+            ratios,
+        };
+        let value = |code: &i32| (low + (high - low) * f64::from(*code) / LOG_STEPS).exp();
+        let values = before.logs.iter().map(value).collect();
+        let ratio = |code: i32| f64::from(code) / RATIO_STEPS;
+        let at_angle = |k: usize| before.ratios.each_ref().map(|codes| ratio(codes[k]));
+        let ratios = (0..angles).map(at_angle).collect();
         Row {
             bulk: BulkOptics {
                 wavelength_nm,
@@ -224,6 +306,19 @@ mod tests {
             );
         }
         Ok(())
+    }
+
+    #[test]
+    fn codes_are_the_sums_of_their_differences() {
+        let (before, codes) = ([0, 65_535, 300, 7], [65_535, 0, 299, 7]);
+        let steps = differences(&codes, &before).map(|step| sign_last(step as i16));
+        let sums = sums(steps.map(|step| i32::from(sign_first(step))), &before);
+        assert_eq!(sums.map(|sum| sum & 0xffff).collect::<Vec<_>>(), codes);
+        assert_eq!(
+            [0, -1, 1, -2, i16::MIN].map(sign_last),
+            [0, 1, 2, 3, 65_535]
+        );
+        assert!((i16::MIN..=i16::MAX).all(|number| sign_first(sign_last(number)) == number));
     }
 
     /// What is written is read back, within the steps in which it is stored.
