@@ -7,7 +7,7 @@
 //! the drawing and the colours are those of the library; the viewer adds no physics.
 //!
 //! Modules, each importing only from those above it: [`state`], `terrain`, `lights`, `photograph`, `address`, `examples`, `options`, `command`,
-//! [`compute`](mod@compute), `message`, `platform`, `picture`, `truth`, `style`, `widgets`, `play`, `view`, `panel`, `reading`, `beside`, `app`, `headless`, `window`, `page`.
+//! [`compute`](mod@compute), `message`, `platform`, `picture`, `truth`, `style`, `widgets`, `place`, `play`, `view`, `panel`, `reading`, `beside`, `app`, `headless`, `window`, `page`.
 
 mod address;
 mod app;
@@ -27,6 +27,7 @@ mod panel;
 #[cfg(not(target_arch = "wasm32"))]
 mod photograph;
 mod picture;
+mod place;
 mod platform;
 mod play;
 mod reading;

@@ -1,11 +1,12 @@
 //! The panel of controls.
 
 use crate::compute::Facts;
+use crate::place;
 use crate::play::{Play, SPEEDS};
 use crate::state::{ALTITUDES_M, Compare, CompareMode, State, Terrain};
 use crate::terrain::SPACING_M;
 use crate::view::{FISHEYE_FOV_DEG, FOV_DEG, Navigation, SUN_AZIMUTH_DEG};
-use crate::widgets::{Number, choice, title};
+use crate::widgets::{Number, choice, quiet, title};
 use airlight::Named;
 use airlight::atmosphere::{AerosolType, Preset};
 use airlight::axes;
@@ -18,7 +19,7 @@ use airlight::scene::{
 use airlight::sun::Moment;
 use airlight_gpu::MOST_LIGHTS;
 use airlight_render::overlay::{DepthFileKind, OverlaySpec};
-use eframe::egui::{self, RichText, Ui};
+use eframe::egui::{self, Ui};
 
 /// What is set besides the state.
 #[derive(Debug)]
@@ -51,38 +52,9 @@ pub fn show(ui: &mut Ui, state: &mut State, shown: Shown<'_>, facts: &Facts, ev1
     compare(ui, state);
 }
 
-/// Place and time of a scene that has only a sun: Paris, on an evening in June.
-const PLACE: (f64, f64) = (48.8584, 2.2945);
+/// Time of a scene that has only a sun: an evening in June.
 const TIME: &str = "2026-06-21T21:15:00+02:00";
 const DAY_S: f64 = 86_400.0;
-
-/// Cities with latitude and longitude, degrees north and east.
-const CITIES: [(&str, f64, f64); 24] = [
-    ("Anchorage", 61.2181, -149.9003),
-    ("Bangalore", 12.9716, 77.5946),
-    ("Beijing", 39.9042, 116.4074),
-    ("Berlin", 52.52, 13.405),
-    ("Buenos Aires", -34.6037, -58.3816),
-    ("Cairo", 30.0444, 31.2357),
-    ("Cape Town", -33.9249, 18.4241),
-    ("Honolulu", 21.3069, -157.8583),
-    ("Istanbul", 41.0082, 28.9784),
-    ("Lagos", 6.5244, 3.3792),
-    ("London", 51.5074, -0.1278),
-    ("Los Angeles", 34.0522, -118.2437),
-    ("Mexico City", 19.4326, -99.1332),
-    ("Nairobi", -1.2921, 36.8219),
-    ("New York", 40.7128, -74.006),
-    ("Paris", 48.8584, 2.2945),
-    ("Quito", -0.1807, -78.4678),
-    ("Reykjavik", 64.1466, -21.9426),
-    ("Rome", 41.9028, 12.4964),
-    ("Singapore", 1.3521, 103.8198),
-    ("Sydney", -33.8688, 151.2093),
-    ("Tokyo", 35.6762, 139.6503),
-    ("Tromsø", 69.6492, 18.9553),
-    ("Wellington", -41.2866, 174.7756),
-];
 
 fn sun(ui: &mut Ui, state: &mut State, play: &mut Play, facts: &Facts) {
     if title(ui, "Sun") {
@@ -101,8 +73,9 @@ fn sun(ui: &mut Ui, state: &mut State, play: &mut Play, facts: &Facts) {
             sun.elevation_deg = None;
             sun.azimuth_deg = None;
             sun.distance_ratio = None;
-            sun.latitude_deg.get_or_insert(PLACE.0);
-            sun.longitude_deg.get_or_insert(PLACE.1);
+            let [latitude_deg, longitude_deg] = place::USUAL_DEG;
+            sun.latitude_deg.get_or_insert(latitude_deg);
+            sun.longitude_deg.get_or_insert(longitude_deg);
             sun.time.get_or_insert_with(|| TIME.to_owned());
         }
     });
@@ -117,19 +90,15 @@ fn sun(ui: &mut Ui, state: &mut State, play: &mut Play, facts: &Facts) {
             .help("Clockwise from north.")
             .show_optional(ui, &mut sun.azimuth_deg, SUN_AZIMUTH_DEG);
     } else {
-        let named = CITIES.map(|(name, latitude_deg, longitude_deg)| {
-            ((Some(latitude_deg), Some(longitude_deg)), name.to_owned())
-        });
-        let mut place = (sun.latitude_deg, sun.longitude_deg);
-        if choice(ui, "City", &mut place, &named) {
-            (sun.latitude_deg, sun.longitude_deg) = place;
-        }
+        place::search(ui, sun);
+        let [latitude_deg, longitude_deg] = place::USUAL_DEG;
         Number::new("Latitude", "°", -90.0..=90.0)
             .decimals(4)
-            .show_optional(ui, &mut sun.latitude_deg, PLACE.0);
+            .show_optional(ui, &mut sun.latitude_deg, latitude_deg);
         Number::new("Longitude", "°", -180.0..=180.0)
             .decimals(4)
-            .show_optional(ui, &mut sun.longitude_deg, PLACE.1);
+            .show_optional(ui, &mut sun.longitude_deg, longitude_deg);
+        place::map(ui, sun);
         time(ui, &mut sun.time);
         passing(ui, play);
         quiet(
@@ -824,12 +793,6 @@ fn compare(ui: &mut Ui, state: &mut State) {
                 .show(ui, &mut compare.split);
         }
     }
-}
-
-/// A line of less important text.
-pub fn quiet(ui: &mut Ui, text: String) {
-    let text = RichText::new(text).color(crate::style::QUIET).small();
-    ui.add(egui::Label::new(text).wrap());
 }
 
 /// A number to hundredths, as users type it.

@@ -205,3 +205,9 @@ pub fn title(ui: &mut Ui, text: &str) -> bool {
     })
     .inner
 }
+
+/// A line of less important text.
+pub fn quiet(ui: &mut Ui, text: String) {
+    let text = RichText::new(text).color(crate::style::QUIET).small();
+    ui.add(egui::Label::new(text).wrap());
+}

@@ -1,5 +1,7 @@
 //! The viewer in a window that is not shown, on a Vulkan device.
 
+mod place;
+
 use airlight::atmosphere::{DensityProfile, Preset};
 use airlight::axes;
 use airlight::fog::droplets::Droplets;
