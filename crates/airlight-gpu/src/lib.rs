@@ -25,7 +25,6 @@ mod lighting;
 mod lights;
 mod pass;
 mod passes;
-#[cfg(not(target_arch = "wasm32"))]
 mod read;
 mod renderer;
 mod shadows;
@@ -43,8 +42,9 @@ pub use frame_tables::{FrameTables, SkySolver, SourceTables};
 pub use lighting::{DirectLight, Lighting};
 pub use lights::MOST_LIGHTS;
 pub use passes::SkyPasses;
+pub use read::{PendingPixels, ReadTextureError};
 #[cfg(not(target_arch = "wasm32"))]
-pub use read::{ReadTextureError, read_rgb, read_texture};
+pub use read::{read_rgb, read_texture};
 pub use renderer::{SkyRenderer, SkyRendererSettings, Work};
 pub use shadows::{ShadowMap, SunShadows};
 pub use terrain::{HeightField, TerrainPass, TerrainView};

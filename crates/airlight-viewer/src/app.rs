@@ -5,6 +5,8 @@ use crate::command::command_line;
 use crate::compute::{Answer, Facts, GroundLight, Light, Output, Request, SPACE, Target, Task};
 use crate::examples::{self, EXAMPLES};
 use crate::options::Options;
+#[cfg(target_arch = "wasm32")]
+use crate::page_files::{self, PageFile, PageFiles, PendingPicture};
 #[cfg(not(target_arch = "wasm32"))]
 use crate::photograph::{self, FoggedPhotograph, PhotographWorker};
 use crate::picture::{Ground, Picture, Shot, tone_mapper, tone_of};
@@ -21,7 +23,7 @@ use airlight_gpu::{HeightField, SkyRendererError, TerrainPoint};
 use airlight_image::Frame;
 #[cfg(not(target_arch = "wasm32"))]
 use airlight_image::rows::StoredRows;
-use airlight_image::tone::Exposure;
+use airlight_image::tone::{Exposure, ToneMapper};
 #[cfg(not(target_arch = "wasm32"))]
 use airlight_image::{Control, PictureOptions, Size, write_picture};
 use airlight_render::exposure::{ExposureSettings, METERED_WIDTH, MeteredPicture};
@@ -33,11 +35,17 @@ use eframe::egui::{self, Align2, Color32, FontId, Key, Rect, TextureId, Ui, pos2
 use eframe::egui_wgpu::RenderState;
 use eframe::wgpu;
 use glam::DVec3;
+use std::collections::BTreeMap;
 use std::fmt;
-#[cfg(not(target_arch = "wasm32"))]
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What the field of a file takes.
+#[cfg(not(target_arch = "wasm32"))]
+const FILE_HELP: &str = "A scene (.toml) to open or save, heights of terrain to open, or the picture to save: .exr, .hdr, .png, .jpg";
+#[cfg(target_arch = "wasm32")]
+const FILE_HELP: &str = "Name of the scene (.toml) or picture (.png, .hdr) to save";
 
 /// Longest time that passes between two frames, s: after a pause, time goes on from where it stood.
 const LONGEST_FRAME_S: f32 = 0.1;
@@ -130,8 +138,14 @@ pub struct Viewer {
     /// Why a file was not opened or saved.
     notice: Option<String>,
     /// Name of a file to open or save.
-    #[cfg(not(target_arch = "wasm32"))]
     file: String,
+    /// Contents of files of heights that were opened from memory, by name.
+    contents: BTreeMap<String, Vec<u8>>,
+    #[cfg(target_arch = "wasm32")]
+    page_files: PageFiles,
+    /// The picture that is being saved.
+    #[cfg(target_arch = "wasm32")]
+    saving: Option<PendingPicture>,
     /// Whether the graphics device is gone.
     is_lost: Arc<AtomicBool>,
 }
@@ -178,6 +192,8 @@ impl Viewer {
         let beside = context.clone();
         #[cfg(not(target_arch = "wasm32"))]
         let photographs = context.clone();
+        #[cfg(target_arch = "wasm32")]
+        let files = context.clone();
         let is_lost = Arc::new(AtomicBool::new(false));
         let lost = is_lost.clone();
         render
@@ -218,8 +234,12 @@ impl Viewer {
             #[cfg(not(target_arch = "wasm32"))]
             fogged_texture: None,
             notice: None,
-            #[cfg(not(target_arch = "wasm32"))]
             file: "scene.toml".to_owned(),
+            contents: BTreeMap::new(),
+            #[cfg(target_arch = "wasm32")]
+            page_files: PageFiles::new(move || files.request_repaint()),
+            #[cfg(target_arch = "wasm32")]
+            saving: None,
         })
     }
 
@@ -402,7 +422,11 @@ impl Viewer {
             loaded.file == wanted.file && loaded.spacing_m == wanted.spacing_m
         };
         if !self.terrain.as_ref().is_some_and(is_loaded) {
-            let heights = terrain::heights(wanted);
+            let contents = wanted
+                .file
+                .as_ref()
+                .and_then(|file| self.contents.get(file));
+            let heights = terrain::heights(wanted, contents.map(Vec::as_slice));
             if let Ok(heights) = &heights {
                 self.picture.set_heights(heights);
             }
@@ -458,10 +482,7 @@ impl Viewer {
         self.take_answers();
         self.shortcuts(ui);
         self.pass_time(ui);
-        #[cfg(not(target_arch = "wasm32"))]
-        for file in ui.input(|i| i.raw.dropped_files.clone()) {
-            self.notice = self.open(file.path()).err();
-        }
+        self.take_files(ui);
         if self.has_panel {
             let facts = self.facts();
             let ev100 = self.metered.as_ref().map_or(15.0, |(_, e)| e.ev100());
@@ -543,26 +564,94 @@ impl Viewer {
         {
             self.state = state;
         }
-        #[cfg(not(target_arch = "wasm32"))]
         self.show_files(ui);
     }
 
-    /// A file to open or to save: a scene, or the picture.
+    /// Opens the files that were dropped.
     #[cfg(not(target_arch = "wasm32"))]
+    fn take_files(&mut self, ui: &Ui) {
+        for file in ui.input(|i| i.raw.dropped_files.clone()) {
+            self.notice = self.open(file.path()).err();
+        }
+    }
+
+    /// Reads the files that were dropped, opens those that have been read, and saves the picture whose pixels have come.
+    #[cfg(target_arch = "wasm32")]
+    fn take_files(&mut self, ui: &Ui) {
+        for file in ui.input(|i| i.raw.dropped_files.clone()) {
+            self.page_files.read(file);
+        }
+        while let Some(PageFile { path, contents }) = self.page_files.take() {
+            let opened = contents.and_then(|contents| self.open_contents(&path, contents));
+            self.notice = opened.err();
+        }
+        if let Some(picture) = self.saving.take() {
+            // Devices of WebGL find out only here.
+            let _ = self.render.device.poll(wgpu::PollType::Poll);
+            match picture.pixels.has_arrived() {
+                true => self.notice = picture.save().err(),
+                false => {
+                    self.saving = Some(picture);
+                    ui.ctx().request_repaint();
+                }
+            }
+        }
+    }
+
+    /// A file to open or to save: a scene, or the picture.
     fn show_files(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
             let name = crate::widgets::name(ui, "File", true);
             let field = egui::TextEdit::singleline(&mut self.file).desired_width(84.0);
-            ui.add(field).labelled_by(name.id).on_hover_text(
-                "A scene (.toml) to open or save, heights of terrain to open, or the picture to save: .exr, .hdr, .png, .jpg",
-            );
-            let done = match [ui.button("Open").clicked(), ui.button("Save").clicked()] {
-                [true, _] => self.open(self.file.clone().as_ref()),
-                [_, true] => self.save(self.file.clone().as_ref()),
-                _ => return,
-            };
-            self.notice = done.err();
+            ui.add(field).labelled_by(name.id).on_hover_text(FILE_HELP);
+            match [ui.button("Open").clicked(), ui.button("Save").clicked()] {
+                [true, _] => self.open_file(),
+                [_, true] => self.save_file(),
+                _ => {}
+            }
         });
+    }
+
+    /// Opens the file that is named, or on a page one that the user chooses.
+    fn open_file(&mut self) {
+        #[cfg(not(target_arch = "wasm32"))]
+        let opened = self.open(self.file.clone().as_ref());
+        #[cfg(target_arch = "wasm32")]
+        let opened = self.page_files.choose();
+        self.notice = opened.err();
+    }
+
+    /// Saves the file that is named.
+    fn save_file(&mut self) {
+        self.notice = self.save(self.file.clone().as_ref()).err();
+    }
+
+    /// Opens a file whose contents are in memory: a scene, or heights as terrain (PNG, NPY, PFM).
+    ///
+    /// # Errors
+    /// A sentence where a scene is invalid.
+    pub fn open_contents(&mut self, file: &Path, contents: Vec<u8>) -> Result<(), String> {
+        if terrain::is_name(file) {
+            let name = file.display().to_string();
+            self.contents.insert(name.clone(), contents);
+            // Read again, also under a name that was read before.
+            self.terrain = None;
+            self.state.terrain = Some(crate::state::Terrain {
+                file: Some(name),
+                ..Default::default()
+            });
+            return Ok(());
+        }
+        let text = String::from_utf8(contents);
+        let text = text.map_err(|_| {
+            format!(
+                "expected a scene (.toml) or heights of terrain (.png, .npy, .pfm), got `{}`",
+                file.display()
+            )
+        })?;
+        let state = State::from_toml(&text);
+        self.state = state.map_err(|error| format!("scene `{}`: {error}", file.display()))?;
+        Ok(())
     }
 
     /// Opens a scene file, a photograph (a picture with colours), its depth if there is one, or else heights as terrain.
@@ -613,12 +702,9 @@ impl Viewer {
             let size = self.saved_size()?;
             return save_by_library(&self.state.scene, size, file).map_err(|e| e.to_string());
         }
-        let shot = self.saved_shot()?;
-        let mapper = tone_mapper(&self.state.scene.output, shot.exposure);
-        let mapper = mapper.ok_or("expected tone settings in their ranges")?;
-        let exposure = shot.exposure.min(self.light().map_or(1.0, sun_exposure));
-        let exposed = self.picture.light_of(&Shot { exposure, ..shot })?;
-        let pixels = luminances(exposed, exposure);
+        let (shot, mapper) = self.saved_shot()?;
+        let exposed = self.picture.light_of(&shot)?;
+        let pixels = luminances(exposed, shot.exposure);
         let [width, height] = shot.size();
         let write = || {
             let rows = StoredRows::new(width, 3, pixels.as_flattened().to_vec())?;
@@ -629,19 +715,46 @@ impl Viewer {
         write().map(drop).map_err(|error| error.to_string())
     }
 
-    /// The picture that is saved.
-    #[cfg(not(target_arch = "wasm32"))]
-    fn saved_shot(&mut self) -> Result<Shot, String> {
+    /// Saves the scene as TOML, or the picture as PNG or Radiance HDR by the ending of the name, as a download.
+    ///
+    /// # Errors
+    /// A sentence where there is no picture yet, or for another ending.
+    #[cfg(target_arch = "wasm32")]
+    pub fn save(&mut self, file: &Path) -> Result<(), String> {
+        if file.extension().is_some_and(|ending| ending == "toml") {
+            return page_files::download(file, self.state.to_toml()?.as_bytes());
+        }
+        if self.state.is_drawn_by_library() {
+            return Err("expected a scene that the graphics device draws whole; try saving it as .toml, for the program to draw".to_owned());
+        }
+        PendingPicture::check_name(file)?;
+        let (shot, tone) = self.saved_shot()?;
+        let pixels = self.picture.pending_light_of(&shot, || {})?;
+        self.saving = Some(PendingPicture {
+            file: file.to_owned(),
+            size: shot.size(),
+            pixels,
+            exposure: shot.exposure,
+            tone,
+        });
+        Ok(())
+    }
+
+    /// The picture that is saved, exposed so that its texture holds the sun, and how a display shows its light.
+    fn saved_shot(&mut self) -> Result<(Shot, ToneMapper), String> {
         let size = self.saved_size()?;
         let frame = view::frame_of(&self.state, size, self.facts().sun_azimuth_deg)?;
         let metered = self.metered.take();
         let shot = self.shot(frame);
         self.metered = metered;
-        shot.ok_or_else(|| "expected light to save, got none yet".to_owned())
+        let shot = shot.ok_or("expected light to save, got none yet")?;
+        let tone = tone_mapper(&self.state.scene.output, shot.exposure);
+        let tone = tone.ok_or("expected tone settings in their ranges")?;
+        let exposure = shot.exposure.min(self.light().map_or(1.0, sun_exposure));
+        Ok((Shot { exposure, ..shot }, tone))
     }
 
     /// Width and height of the picture that is saved, pixels.
-    #[cfg(not(target_arch = "wasm32"))]
     fn saved_size(&self) -> Result<[u32; 2], String> {
         let drawn = self.drawn;
         let (_, shot) = drawn.ok_or("expected a picture to save, got none yet")?;
@@ -793,6 +906,12 @@ impl Viewer {
         }
         if pressed(egui::Modifiers::NONE, Key::F2) {
             self.has_panel = !self.has_panel;
+        }
+        if pressed(command, Key::O) {
+            self.open_file();
+        }
+        if pressed(command, Key::S) {
+            self.save_file();
         }
     }
 
@@ -1246,7 +1365,6 @@ fn luminances(mut exposed: Vec<[f32; 3]>, exposure: f32) -> Vec<[f32; 3]> {
 }
 
 /// Exposure at which half floats hold the sun's disc, whose centre is at most twice as bright as its mean.
-#[cfg(not(target_arch = "wasm32"))]
 fn sun_exposure(light: &Light) -> f32 {
     let solid_angle = std::f32::consts::TAU * light.tables.first.disc.one_minus_cos;
     let mean = light.tables.lighting.sun_illuminance_lx.max_element() / solid_angle;

@@ -7,7 +7,7 @@
 //! the drawing and the colours are those of the library; the viewer adds no physics.
 //!
 //! Modules, each importing only from those above it: [`state`], `terrain`, `lights`, `photograph`, `address`, `examples`, `options`, `command`,
-//! [`compute`](mod@compute), `message`, `platform`, `picture`, `truth`, `style`, `widgets`, `place`, `play`, `view`, `panel`, `reading`, `beside`, `app`, `headless`, `window`, `page`.
+//! [`compute`](mod@compute), `message`, `platform`, `page_files`, `picture`, `truth`, `style`, `widgets`, `place`, `play`, `view`, `panel`, `reading`, `beside`, `app`, `headless`, `window`, `page`.
 
 mod address;
 mod app;
@@ -23,6 +23,8 @@ mod message;
 mod options;
 #[cfg(target_arch = "wasm32")]
 mod page;
+#[cfg(target_arch = "wasm32")]
+mod page_files;
 mod panel;
 #[cfg(not(target_arch = "wasm32"))]
 mod photograph;

@@ -145,7 +145,6 @@ pub struct Picture {
 #[derive(Debug)]
 struct Targets {
     size: [u32; 2],
-    #[cfg(not(target_arch = "wasm32"))]
     light: wgpu::Texture,
     light_view: wgpu::TextureView,
     depth: wgpu::TextureView,
@@ -283,6 +282,31 @@ impl Picture {
     /// A sentence where the device cannot draw it or does not return it.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn light_of(&self, shot: &Shot) -> Result<Vec<[f32; 3]>, String> {
+        self.light_in(&self.drawn_targets(shot)?)
+    }
+
+    /// The same without waiting for the device; `wake` is called when it is there.
+    ///
+    /// # Errors
+    /// A sentence where the device cannot draw it.
+    #[cfg(target_arch = "wasm32")]
+    pub fn pending_light_of(
+        &self,
+        shot: &Shot,
+        wake: impl FnOnce() + Send + 'static,
+    ) -> Result<airlight_gpu::PendingPixels, String> {
+        let targets = self.drawn_targets(shot)?;
+        let light = &targets.light;
+        Ok(airlight_gpu::PendingPixels::of(
+            &self.device,
+            &self.queue,
+            light,
+            wake,
+        ))
+    }
+
+    /// Targets of their own with a shot.
+    fn drawn_targets(&self, shot: &Shot) -> Result<Targets, String> {
         let largest = self.device.limits().max_texture_dimension_2d;
         let [width, height] = shot.size();
         if width.max(height) > largest {
@@ -292,7 +316,7 @@ impl Picture {
         }
         let targets = self.new_targets(shot);
         self.draw_into(&targets, shot);
-        self.light_in(&targets)
+        Ok(targets)
     }
 
     #[cfg(not(target_arch = "wasm32"))]
@@ -330,7 +354,6 @@ impl Picture {
         Targets {
             size: [width, height],
             light_view: view(&light),
-            #[cfg(not(target_arch = "wasm32"))]
             light,
             depth: view(&texture(depth, wgpu::TextureUsages::empty())),
             has_ground,

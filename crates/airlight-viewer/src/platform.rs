@@ -61,7 +61,7 @@ mod desktop {
 mod page {
     use super::{Answer, Request};
     use eframe::wasm_bindgen::{JsCast, closure::Closure};
-    use std::cell::{Cell, RefCell};
+    use std::cell::RefCell;
     use std::collections::VecDeque;
     use std::rc::Rc;
     use web_sys::js_sys::Uint8Array;
@@ -74,27 +74,37 @@ mod page {
     #[derive(Debug)]
     pub struct Worker {
         worker: Option<web_sys::Worker>,
-        answers: Rc<RefCell<VecDeque<Answer>>>,
+        messages: Rc<RefCell<VecDeque<Message>>>,
         /// Number of the last request.
-        asked: Rc<Cell<u64>>,
+        asked: u64,
+        /// Bytes of the last answer. The memory of a page never shrinks: large pieces that come and go would leave holes in it.
+        bytes: Vec<u8>,
+    }
+
+    /// What the worker has sent.
+    #[derive(Debug)]
+    enum Message {
+        /// An answer, outside the memory of the page's module.
+        Answer(Uint8Array),
+        /// It has failed.
+        Failure,
     }
 
     impl Worker {
         /// Starts the worker, and calls `wake` after each answer.
         pub fn new(wake: impl Fn() + Send + 'static) -> Self {
-            let answers = Rc::new(RefCell::new(VecDeque::new()));
-            let asked = Rc::new(Cell::new(0));
-            let worker = start(answers.clone(), asked.clone(), wake);
+            let messages = Rc::default();
             Self {
-                worker,
-                answers,
-                asked,
+                worker: start(&messages, wake),
+                messages,
+                asked: 0,
+                bytes: Vec::new(),
             }
         }
 
         /// Hands in a request. False if there is no worker.
         pub fn send(&mut self, request: Request) -> bool {
-            self.asked.set(request.number);
+            self.asked = request.number;
             let (Some(worker), Ok(bytes)) = (&self.worker, request.to_bytes()) else {
                 return false;
             };
@@ -104,14 +114,22 @@ mod page {
 
         /// An answer that has arrived.
         pub fn receive(&mut self) -> Option<Answer> {
-            self.answers.borrow_mut().pop_front()
+            let message = self.messages.borrow_mut().pop_front()?;
+            let Message::Answer(bytes) = message else {
+                let result =
+                    Err("the worker of the page has failed; load the page again".to_owned());
+                let number = self.asked;
+                return Some(Answer { number, result });
+            };
+            self.bytes.resize(bytes.length() as usize, 0);
+            bytes.copy_to(&mut self.bytes);
+            Answer::from_bytes(&self.bytes)
         }
     }
 
     /// The worker, with the module of the page, so that it is neither loaded nor compiled again.
     fn start(
-        answers: Rc<RefCell<VecDeque<Answer>>>,
-        asked: Rc<Cell<u64>>,
+        messages: &Rc<RefCell<VecDeque<Message>>>,
         wake: impl Fn() + 'static,
     ) -> Option<web_sys::Worker> {
         let options = WorkerOptions::new();
@@ -119,16 +137,15 @@ mod page {
         let worker = web_sys::Worker::new_with_options(SCRIPT, &options).ok()?;
         worker.post_message(&eframe::wasm_bindgen::module()).ok()?;
         let wake = Rc::new(wake);
-        let (failed, wake_failed) = (answers.clone(), wake.clone());
+        let (answers, failures) = (messages.clone(), messages.clone());
+        let wake_failed = wake.clone();
         let on_message = Closure::<dyn FnMut(MessageEvent)>::new(move |event: MessageEvent| {
-            let bytes = Uint8Array::new(&event.data()).to_vec();
-            answers.borrow_mut().extend(Answer::from_bytes(&bytes));
+            let bytes = event.data().unchecked_into::<Uint8Array>();
+            answers.borrow_mut().push_back(Message::Answer(bytes));
             wake();
         });
         let on_error = Closure::<dyn FnMut(Event)>::new(move |_| {
-            let number = asked.get();
-            let result = Err("the worker of the page has failed; load the page again".to_owned());
-            failed.borrow_mut().push_back(Answer { number, result });
+            failures.borrow_mut().push_back(Message::Failure);
             wake_failed();
         });
         worker.set_onmessage(Some(on_message.as_ref().unchecked_ref()));

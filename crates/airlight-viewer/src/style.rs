@@ -17,11 +17,19 @@ const PANEL: Color32 = Color32::from_rgb(20, 22, 25);
 const WIDGET: Color32 = Color32::from_rgb(42, 46, 52);
 const WIDGET_HOVERED: Color32 = Color32::from_rgb(58, 63, 71);
 
-/// The typeface of all text.
-fn fonts() -> FontDefinitions {
+/// Ubuntu Light, on a page with Latin letters alone, which are a third of its size (scripts/page_font.py).
+#[cfg(not(target_arch = "wasm32"))]
+const TYPEFACE: &[u8] = epaint_default_fonts::UBUNTU_LIGHT;
+#[cfg(target_arch = "wasm32")]
+const TYPEFACE: &[u8] = PAGE_TYPEFACE;
+#[cfg(any(test, target_arch = "wasm32"))]
+const PAGE_TYPEFACE: &[u8] = include_bytes!("../font/UbuntuLight-page.ttf");
+
+/// A typeface for all text.
+fn fonts(typeface: &'static [u8]) -> FontDefinitions {
     const NAME: &str = "Ubuntu-Light";
     let mut fonts = FontDefinitions::empty();
-    let data = FontData::from_static(epaint_default_fonts::UBUNTU_LIGHT);
+    let data = FontData::from_static(typeface);
     fonts.font_data.insert(NAME.to_owned(), Arc::new(data));
     for names in fonts.families.values_mut() {
         names.push(NAME.to_owned());
@@ -31,7 +39,7 @@ fn fonts() -> FontDefinitions {
 
 /// Sets the look of all widgets: dark, so that the picture is judged beside dim surroundings.
 pub fn apply(context: &egui::Context) {
-    context.set_fonts(fonts());
+    context.set_fonts(fonts(TYPEFACE));
     context.set_theme(egui::Theme::Dark);
     context.all_styles_mut(|style| {
         style.text_styles = [
@@ -80,4 +88,38 @@ pub fn panel_frame() -> egui::Frame {
     egui::Frame::new()
         .fill(PANEL)
         .inner_margin(Margin::symmetric(14, 10))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::place;
+
+    /// The typeface of the page has what the viewer writes, and its letters are as wide as those of the desktop.
+    #[test]
+    fn the_page_writes_as_the_desktop_does() {
+        let [page, desktop] = [PAGE_TYPEFACE, TYPEFACE].map(|typeface| {
+            let context = egui::Context::default();
+            context.set_fonts(fonts(typeface));
+            let mut first = context.run_ui(Default::default(), |_| {});
+            first.textures_delta.clear();
+            context
+        });
+        let names = place::city_names().collect::<String>();
+        let signs = "0123456789.,-+−±×°′″²³µαβλμτ…–—·•→←≈≤≥ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz()[]/%&'\"";
+        for size in [11.0, 13.0, 17.0] {
+            let font = FontId::proportional(size);
+            for c in names.chars().chain(signs.chars()) {
+                let width = |context: &egui::Context| {
+                    context.fonts_mut(|fonts| {
+                        let has_glyph = fonts.has_glyph(&font, c);
+                        has_glyph.then(|| fonts.glyph_width(&font, c))
+                    })
+                };
+                let [on_page, on_desktop] = [&page, &desktop].map(width);
+                assert_eq!(on_page, on_desktop, "{c:?}");
+                assert!(on_page.is_some() || !c.is_alphanumeric(), "{c:?}");
+            }
+        }
+    }
 }

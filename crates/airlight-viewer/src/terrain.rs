@@ -2,6 +2,7 @@
 
 use crate::state::Terrain;
 use airlight_gpu::HeightField;
+use airlight_image::input::{DepthMap, DepthMeaning, DepthOptions, read_depth_bytes};
 
 /// Heights around the Jacksboro fault in the Cumberland Mountains, m above sea level, 16-bit grey, from north to south.
 const CUMBERLAND: &[u8] = include_bytes!("../data/jacksboro_dem_m.png");
@@ -14,7 +15,6 @@ pub const SPACING_M: f64 = 30.0;
 pub const CLEARANCE_M: f64 = 2.0;
 
 /// Whether a file is one of heights, by the ending of its name.
-#[cfg(not(target_arch = "wasm32"))]
 pub fn is_name(file: &std::path::Path) -> bool {
     let ending = file.extension().unwrap_or_default().to_ascii_lowercase();
     ["exr", "npy", "npz", "pfm", "png", "tif", "tiff"]
@@ -22,15 +22,16 @@ pub fn is_name(file: &std::path::Path) -> bool {
         .any(|known| ending == *known)
 }
 
-/// Heights of a terrain above its lowest point, which lies on the ground of the planet.
+/// Heights of a terrain above its lowest point, which lies on the ground of the planet. `contents` are those of its file, if they are in
+/// memory.
 ///
 /// # Errors
 /// A sentence where the file cannot be read or holds no heights.
-pub fn heights(terrain: &Terrain) -> Result<HeightField, String> {
+pub fn heights(terrain: &Terrain, contents: Option<&[u8]>) -> Result<HeightField, String> {
     let (size, spacing_m, heights_m) = match &terrain.file {
         None => cumberland()?,
         Some(file) => {
-            let (size, heights_m) = of_file(file)?;
+            let (size, heights_m) = of_file(file, contents)?;
             let spacing_m = terrain.spacing_m.unwrap_or(SPACING_M);
             (size, [spacing_m; 2], heights_m)
         }
@@ -56,26 +57,31 @@ fn cumberland() -> Result<Posts, String> {
     Ok(([columns, rows], CUMBERLAND_SPACING_M, heights_m.collect()))
 }
 
-#[cfg(not(target_arch = "wasm32"))]
-fn of_file(file: &str) -> Result<([usize; 2], Vec<f32>), String> {
-    use airlight_image::input::DepthMeaning;
-    use airlight_image::{DepthOptions, read_depth};
-
+fn of_file(file: &str, contents: Option<&[u8]>) -> Result<([usize; 2], Vec<f32>), String> {
     let options = DepthOptions {
         meaning: DepthMeaning::RayDistance,
         // Sea level is a height as any other.
         offset: Some(0.0),
         ..Default::default()
     };
-    let map = read_depth(file.as_ref(), &options).map_err(|error| error.to_string())?;
+    let map = match contents {
+        Some(contents) => read_depth_bytes(contents.to_vec(), file.as_ref(), &options)
+            .map_err(|error| error.to_string()),
+        None => from_disk(file, &options),
+    }?;
     let size = [map.size.width() as usize, map.size.height() as usize];
     Ok((size, map.metres))
 }
 
+#[cfg(not(target_arch = "wasm32"))]
+fn from_disk(file: &str, options: &DepthOptions) -> Result<DepthMap, String> {
+    airlight_image::read_depth(file.as_ref(), options).map_err(|error| error.to_string())
+}
+
 #[cfg(target_arch = "wasm32")]
-fn of_file(file: &str) -> Result<([usize; 2], Vec<f32>), String> {
+fn from_disk(file: &str, _options: &DepthOptions) -> Result<DepthMap, String> {
     Err(format!(
-        "expected the terrain of the page, got the file {file:?}, which the page cannot read"
+        "expected the file `{file}` of heights, which the address does not keep; try opening it again, or dropping it on the page"
     ))
 }
 
@@ -85,7 +91,7 @@ mod tests {
 
     #[test]
     fn the_cumberland_mountains_have_valleys_and_ridges() {
-        let field = heights(&Terrain::default()).unwrap();
+        let field = heights(&Terrain::default(), None).unwrap();
         assert_eq!(field.size(), [403, 344]);
         let posts = (0..403).flat_map(|i| (0..344).map(move |j| [f64::from(i), f64::from(j)]));
         let lowest_m = posts
@@ -112,11 +118,18 @@ mod tests {
             spacing_m: Some(10.0),
             ..Default::default()
         };
-        let field = heights(&terrain(&file)).unwrap();
+        let field = heights(&terrain(&file), None).unwrap();
         assert_eq!(field.size(), [2, 2]);
         assert!((field.height_m([-5.0, -5.0]) - 0.0).abs() < 1e-5);
         assert!((field.height_m([5.0, 5.0]) - 20.0).abs() < 1e-5);
-        assert!(heights(&terrain(&folder.join("none.png"))).is_err());
+        // The same in memory, whatever is on the disk.
+        let contents = std::fs::read(&file).unwrap();
+        let none = terrain(&folder.join("none.pfm"));
+        assert!(heights(&none, None).is_err());
+        let in_memory = heights(&none, Some(&contents)).unwrap();
+        assert_eq!(in_memory.height_m([5.0, 5.0]), field.height_m([5.0, 5.0]));
+        let error = heights(&none, Some(&contents[..20])).unwrap_err();
+        assert!(error.contains("none.pfm"), "{error}");
         std::fs::remove_dir_all(&folder).unwrap();
     }
 }

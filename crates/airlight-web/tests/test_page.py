@@ -14,14 +14,35 @@ SIZE = {"width": 900, "height": 600}
 PICTURE = (slice(20, 560), slice(10, 560))
 SUNSET = "1&sun.elevation_deg=2.0&sun.azimuth_deg=285.0&camera.azimuth_deg=262.0&camera.elevation_deg=9.0&camera.fov_deg=75.0"
 NOON = SUNSET.replace("elevation_deg=2.0", "elevation_deg=50.0", 1)
+# The field with the name of a file, in the panel.
+FILE_NAME = (735, 95)
 SECONDS = 60
-# Keeps the memory of the page's module in reach.
+# Keeps the memory of the page's module in reach, and the times of frames, of requests to workers and of large answers, ms.
 WATCH = """
 const instantiate = WebAssembly.instantiateStreaming;
 WebAssembly.instantiateStreaming = async (...all) => {
     const made = await instantiate(...all);
     globalThis.memoryOfPage = made.instance.exports.memory;
     return made;
+};
+globalThis.frames = [];
+const request = requestAnimationFrame.bind(globalThis);
+globalThis.requestAnimationFrame = (draw) => request((time) => {
+    draw(time);
+    frames.push(performance.now());
+});
+globalThis.solved = [];
+globalThis.Worker = class extends Worker {
+    postMessage(...all) {
+        this.asked = performance.now();
+        super.postMessage(...all);
+    }
+    set onmessage(take) {
+        super.onmessage = (event) => {
+            if (event.data.byteLength > 1e6) solved.push([this.asked, performance.now()]);
+            take(event);
+        };
+    }
 };
 """
 
@@ -49,6 +70,19 @@ def settled(page):
             return shot
         last = shot
     pytest.fail(f"no still picture after {SECONDS} s")
+
+
+def wait_until(page, condition):
+    """Waits for an expression; the page's security policy forbids that of Playwright."""
+    end = time.monotonic() + SECONDS
+    while not page.evaluate(condition):
+        assert time.monotonic() < end, f"not {condition} after {SECONDS} s: {fragment_of(page)}"
+        page.wait_for_timeout(100)
+
+
+def wait_for_frames(page, count):
+    for _ in range(count):
+        page.evaluate("() => new Promise(requestAnimationFrame)")
 
 
 @pytest.fixture
@@ -141,15 +175,140 @@ def test_memory_is_stable_over_many_moves(opened):
     page = opened(NOON)
     settled(page)
     page.mouse.click(200, 300)
-    memory = lambda: page.evaluate("memoryOfPage.buffer.byteLength")
     sizes = []
     page.keyboard.down("Control")
-    for _ in range(5):
-        for move in range(100):
-            page.keyboard.press("ArrowDown" if (move // 10) % 2 else "ArrowUp")
-        page.wait_for_timeout(500)
-        sizes.append(memory())
-    assert sizes[-1] <= sizes[1], sizes
+    # The first 200 moves fill the history of undo.
+    for move in range(700):
+        page.keyboard.press("ArrowDown" if (move // 10) % 2 else "ArrowUp")
+        # Each is drawn, and is a state of its own.
+        wait_for_frames(page, 1)
+        if move % 50 == 49:
+            sizes.append(page.evaluate("memoryOfPage.buffer.byteLength"))
+    print("memory of the page, MB:", [round(size / 1e6, 2) for size in sizes])
+    assert sizes[-1] <= sizes[3], sizes
+
+
+def test_first_picture_comes_soon_after_the_window(opened):
+    page = opened(SUNSET)
+    settled(page)
+    frames, solved = page.evaluate("[frames, solved]")
+    answered = solved[0][1]
+    # An empty window of egui is there with the second frame.
+    window, picture = frames[1], next(time for time in frames if time > answered)
+    print(f"window {window:.0f} ms after the load, picture after {picture:.0f} ms, {picture / window:.1f} times that")
+    assert picture < 8 * window
+
+
+def test_page_goes_on_while_the_worker_solves(opened):
+    page = opened(NOON)
+    settled(page)
+    page.mouse.click(200, 300)
+    before = page.evaluate("solved.length")
+    page.keyboard.down("Control")
+    page.keyboard.press("ArrowDown")
+    # All suns, now that the sun has moved.
+    wait_until(page, f"solved.length > {before}")
+    frames, (asked, answered) = page.evaluate("[frames, solved.at(-1)]")
+    during = [asked, *(time for time in frames if asked < time < answered), answered]
+    longest = max(numpy.diff(during))
+    print(f"solved in {answered - asked:.0f} ms, {len(during) - 2} frames meanwhile, the longest {longest:.0f} ms")
+    assert longest < 0.5 * (answered - asked)
+
+
+def dropped(page, name, contents):
+    """Drops a file on the page."""
+    script = """([name, numbers]) => {
+        const files = new DataTransfer();
+        files.items.add(new File([new Uint8Array(numbers)], name));
+        return files;
+    }"""
+    transfer = page.evaluate_handle(script, [name, list(contents)])
+    page.dispatch_event("#canvas", "drop", {"dataTransfer": transfer})
+
+
+def saved(page, name, tmp_path):
+    """The file that the page saves under a name."""
+    page.mouse.click(*FILE_NAME)
+    wait_for_frames(page, 3)
+    page.keyboard.press("Control+a")
+    wait_for_frames(page, 3)
+    page.keyboard.type(name)
+    wait_for_frames(page, 3)
+    with page.expect_download(timeout=1000 * SECONDS) as download:
+        page.keyboard.press("Control+s")
+    assert download.value.suggested_filename == name
+    file = tmp_path / name
+    download.value.save_as(file)
+    return file
+
+
+def test_scenes_are_dropped_and_saved(opened, tmp_path):
+    page = opened(NOON)
+    settled(page)
+    scene = saved(page, "noon.toml", tmp_path).read_text()
+    assert "elevation_deg = 50.0" in scene
+    before = page.evaluate("solved.length")
+    dropped(page, "low.toml", scene.replace("elevation_deg = 50.0", "elevation_deg = 2.5").encode())
+    wait_until(page, "location.hash.includes('sun.elevation_deg=2.5')")
+    wait_until(page, f"solved.length > {before}")
+    shot = settled(page)
+    assert numpy.quantile(differences(shot, desktop(fragment_of(page), tmp_path)), 0.99) <= 1
+    dropped(page, "wrong.toml", b"[sun]\nelevation = 3")
+    page.wait_for_timeout(1000)
+    # The sentence stands in the picture; the scene stays.
+    assert "sun.elevation_deg=2.5" in fragment_of(page)
+    assert numpy.abs(settled(page) - shot)[520:, :560].max() > 100
+
+
+def test_pictures_are_saved(opened, tmp_path):
+    page = opened(SUNSET)
+    shot = settled(page)
+    png = pixels(saved(page, "sunset.png", tmp_path).read_bytes())
+    height, width = png.shape[:2]
+    assert height == SIZE["height"] and 500 < width < 600
+    # What is shown, but for notes over it.
+    assert differences(shot[:, :width], png).max() <= 1
+    # The header of Radiance, and its size.
+    hdr = saved(page, "sunset.hdr", tmp_path).read_bytes()
+    assert hdr.startswith(b"#?RADIANCE\n") and f"-Y {height} +X {width}\n".encode() in hdr
+
+
+def test_heights_are_dropped_as_terrain(opened, tmp_path):
+    page = opened(NOON)
+    before = settled(page)
+    ridge = numpy.zeros((64, 64), "<f4")
+    ridge[30:34] = 900.0
+    dropped(page, "ridge.pfm", b"Pf\n64 64\n-1.0\n" + ridge.tobytes())
+    wait_until(page, "location.hash.includes('ridge.pfm')")
+    assert numpy.abs(settled(page) - before)[PICTURE].mean() > 3
+    # The address keeps the name alone.
+    page.reload()
+    page.locator("#note").wait_for(state="detached", timeout=1000 * SECONDS)
+    assert "ridge.pfm" in fragment_of(page)
+
+
+def test_figures_follow_their_sliders(browser, address):
+    page = browser.new_page(viewport=SIZE)
+    complaints = []
+    page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.goto(f"{address}figures.html")
+    for name, curves, sliders in [("phase-function", 2, 2), ("height-fog", 3, 3)]:
+        figure = page.locator(f"[data-figure={name}]")
+        figure.locator("svg").wait_for(timeout=1000 * SECONDS)
+        paths = lambda: [figure.locator("path").nth(k).get_attribute("d") for k in range(curves)]
+        assert figure.get_by_role("slider").count() == sliders
+        before = paths()
+        figure.get_by_role("slider").first.focus()
+        for _ in range(5):
+            page.keyboard.press("ArrowLeft")
+        assert paths()[0] != before[0]
+        assert all(len(path.split("L")) == 201 and "NaN" not in path for path in paths())
+    keep = os.environ.get("AIRLIGHT_SHOTS")
+    if keep:
+        page.screenshot(path=f"{keep}/{browser.graphics}-figures.png", full_page=True)
+    page.close()
+    assert complaints == []
 
 
 def test_wrong_address_is_explained(browser, address):

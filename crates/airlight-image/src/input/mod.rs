@@ -29,7 +29,7 @@ pub use picture::{LightReference, Picture, SampleBits};
 
 use crate::{Control, ImageError, PictureFormat, Size};
 use depth::RawDepth;
-use source::{DecodeError, FileKind, Source, decode_file, decode_source};
+use source::{DecodeError, FileKind, Source, decode_bytes, decode_file, decode_source};
 use std::path::Path;
 
 /// Formats of pictures, as errors name them.
@@ -165,6 +165,29 @@ pub fn read_depth_with(
     finish_depth(path, options, |path| {
         decode_file(path, DEPTH_FORMATS, control, |source| {
             decode_depth(source, options)
+        })
+    })
+}
+
+/// Reads a depth map as [`read_depth`] does, from the contents of a PNG, NPY or PFM file in memory; `path` is its name in errors. The
+/// decoders of the other formats are large for web pages, which have files in memory alone.
+///
+/// # Errors
+/// As [`read_depth`].
+pub fn read_depth_bytes(
+    bytes: Vec<u8>,
+    path: &Path,
+    options: &DepthOptions,
+) -> Result<DepthMap, ImageError> {
+    const FORMATS: &str = "PNG, NPY, PFM";
+    finish_depth(path, options, |path| {
+        decode_bytes(bytes, path, FORMATS, |source| match source.kind {
+            FileKind::Png => png::read_depth(source, options.packing),
+            FileKind::Npy => npy::read(source),
+            FileKind::Pfm => pfm::read(source),
+            _ => Err(DecodeError::invalid(format!(
+                "expected one of the formats {FORMATS} for a file in memory, got another"
+            ))),
         })
     })
 }

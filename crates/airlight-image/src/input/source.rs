@@ -210,6 +210,23 @@ pub(super) fn decode_file<'a, T>(
     decode_source(source, path, decode)
 }
 
+/// Decodes a file whose contents are in memory; `path` is its name in errors.
+pub(super) fn decode_bytes<T>(
+    bytes: Vec<u8>,
+    path: &Path,
+    formats: &str,
+    decode: impl FnOnce(Source<'static>) -> Result<T, DecodeError>,
+) -> Result<T, ImageError> {
+    let length = bytes.len() as u64;
+    let bytes = Bytes::Memory(Cursor::new(bytes));
+    let source = source_of(bytes, length, formats, Control::default());
+    decode_source(
+        source.map_err(|error| error.in_file(path, false))?,
+        path,
+        decode,
+    )
+}
+
 /// Decodes an open file.
 pub(super) fn decode_source<'a, T>(
     source: Source<'a>,
@@ -228,7 +245,7 @@ pub(super) fn decode_source<'a, T>(
 fn open<'a>(path: &Path, formats: &str, control: Control<'a>) -> Result<Source<'a>, DecodeError> {
     let mut file = File::open(path)?;
     let about = file.metadata()?;
-    let (mut bytes, length) = if about.is_file() || about.is_dir() {
+    let (bytes, length) = if about.is_file() || about.is_dir() {
         (Bytes::File(file), about.len())
     } else {
         let mut memory = Vec::new();
@@ -236,6 +253,16 @@ fn open<'a>(path: &Path, formats: &str, control: Control<'a>) -> Result<Source<'
         let length = memory.len() as u64;
         (Bytes::Memory(Cursor::new(memory)), length)
     };
+    source_of(bytes, length, formats, control)
+}
+
+/// The source of bytes that are at their beginning.
+fn source_of<'a>(
+    mut bytes: Bytes,
+    length: u64,
+    formats: &str,
+    control: Control<'a>,
+) -> Result<Source<'a>, DecodeError> {
     let mut start = Vec::with_capacity(16);
     match &mut bytes {
         Bytes::File(file) => file.take(16).read_to_end(&mut start)?,

@@ -41,7 +41,7 @@ pub struct PngOptions {
     /// Bits of a component.
     pub depth: PngDepth,
     /// Compression level: 0 (none), 1 (fastest: repetitions of a byte only) to 9 (smallest); above 3 files shrink little. At 1, photographs
-    /// and noise are about as small as at 3, drawings larger.
+    /// and noise are about as small as at 3, drawings larger. On web pages all levels are 1.
     pub compression_level: u8,
 }
 

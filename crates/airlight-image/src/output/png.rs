@@ -18,6 +18,9 @@ const FORMAT: &str = "PNG";
 /// Compression level of [`run_huffman`].
 const FASTEST: u8 = 1;
 
+/// Whether repetitions of more than a byte are found. Web pages do without that code, and compress as at level 1.
+const HAS_DEFLATER: bool = !cfg!(target_arch = "wasm32");
+
 /// Registry entry of the format.
 pub(super) static ENTRY: FormatEntry = FormatEntry {
     name: FORMAT,
@@ -91,8 +94,10 @@ pub fn encode(
             let filtered = filtered_band(source, tone, size, options.depth, bands, band);
             let end = if band == last { End::Last } else { End::Open };
             let packed = match options.compression_level {
-                FASTEST => run_huffman::compress(&filtered, end),
-                level => Deflater::new(FORMAT, level, false).piece(&filtered, end)?,
+                level if HAS_DEFLATER && level != FASTEST => {
+                    Deflater::new(FORMAT, level, false).piece(&filtered, end)?
+                }
+                _ => run_huffman::compress(&filtered, end),
             };
             Ok((packed, Adler32::of(&filtered), filtered.len()))
         },

@@ -145,6 +145,14 @@ fn chosen_deg(
     })
 }
 
+/// Names of the cities and their countries.
+#[cfg(test)]
+pub fn city_names() -> impl Iterator<Item = &'static str> {
+    cities::all()
+        .iter()
+        .flat_map(|city| [city.name, city.country])
+}
+
 /// Latitude and longitude of the scene, degrees.
 fn place_deg(sun: &SunSpec) -> [f64; 2] {
     [

@@ -1,11 +1,13 @@
-//! The place of the sun: searched among cities, chosen on the map.
+//! The place of the sun: searched among cities, chosen on the map; files that are opened from memory.
 
-use super::{options, settle, window};
+use super::{EVENING, options, settle, window};
 use airlight::sun::Moment;
 use airlight_viewer::Viewer;
+use airlight_viewer::state::Terrain;
 use eframe::egui::{Key, Modifiers, Role, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use std::path::Path;
 
 const PARIS: &str = "
 [sun]
@@ -123,4 +125,44 @@ fn a_place_is_chosen_on_the_map() {
         (up - north - 1.0).abs() < 1e-9 && (right - east - 10.0).abs() < 1e-9,
         "{up} {right}"
     );
+}
+
+/// Files that a page opens, which has no disk.
+#[test]
+fn scenes_and_heights_are_opened_from_memory() {
+    let mut window = window(options(EVENING));
+    settle(&mut window);
+    let scene = window.state().state().to_toml().unwrap();
+    let low = scene.replace("elevation_deg = 12", "elevation_deg = 5");
+    let opened = window
+        .state_mut()
+        .open_contents(Path::new("low.toml"), low.into_bytes());
+    assert_eq!(opened, Ok(()));
+    assert_eq!(window.state().state().scene.sun.elevation_deg, Some(5.0));
+    let mut ridge = b"Pf\n3 3\n-1.0\n".to_vec();
+    for height_m in [0.0f32, 0.0, 0.0, 0.0, 80.0, 0.0, 0.0, 0.0, 0.0] {
+        ridge.extend(height_m.to_le_bytes());
+    }
+    let opened = window
+        .state_mut()
+        .open_contents(Path::new("ridge.pfm"), ridge);
+    assert_eq!(opened, Ok(()));
+    settle(&mut window);
+    assert_eq!(window.state().terrain_error(), None);
+    let named = |terrain: &Option<Terrain>| terrain.as_ref().and_then(|t| t.file.clone());
+    assert_eq!(
+        named(&window.state().state().terrain).as_deref(),
+        Some("ridge.pfm")
+    );
+    // The eye stands on the top.
+    let altitude_m = window.state().state().scene.observer.altitude_m.unwrap();
+    assert!(altitude_m >= 82.0, "{altitude_m}");
+    for (name, contents, reason) in [
+        ("wrong.toml", b"[sun]\nelevation = 3".to_vec(), "elevation"),
+        ("picture.jpg", vec![0xff, 0xd8, 0xff], "picture.jpg"),
+    ] {
+        let error = window.state_mut().open_contents(Path::new(name), contents);
+        let error = error.unwrap_err();
+        assert!(error.contains(reason), "{error}");
+    }
 }
