@@ -1,6 +1,6 @@
 //! What the page, its worker and its tests call.
 
-use crate::sample;
+use crate::{figures, sample};
 use airlight_viewer::{Answer, Computer, Options, Request, State, run_in_page};
 use std::cell::RefCell;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -51,4 +51,27 @@ pub fn sample_values() -> String {
 #[wasm_bindgen]
 pub fn solve_all_suns() -> f64 {
     sample::solve_all_suns()
+}
+
+/// [`figures::phase_function`].
+///
+/// # Errors
+/// As there.
+#[wasm_bindgen]
+pub fn phase_function(g: f64, alpha: f64, count: usize) -> Result<Vec<f64>, String> {
+    figures::phase_function(g, alpha, count)
+}
+
+/// [`figures::height_fog`].
+///
+/// # Errors
+/// As there.
+#[wasm_bindgen]
+pub fn height_fog(
+    visibility_m: f64,
+    scale_height_m: f64,
+    sun_elevation_deg: f64,
+    count: usize,
+) -> Result<Vec<f64>, String> {
+    figures::height_fog(visibility_m, scale_height_m, sun_elevation_deg, count)
 }
