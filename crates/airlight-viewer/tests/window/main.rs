@@ -355,12 +355,12 @@ fn stated_error(text: &str) -> f64 {
 fn one_layer_of_fog_is_that_of_the_solver() {
     let mut window = window(options(EVENING));
     for (fog, most_percent) in [
-        ("scale_height_m = 30, droplets = \"coarse\"", 5.0),
-        ("scale_height_m = 30, droplets = \"mist\"", 5.5),
-        ("base_height_m = 20", 10.0),
-        ("base_height_m = 20, droplets = \"mist\"", 11.0),
-        ("top_m = 40, droplets = \"cloud-c1\"", 6.5),
-        ("top_m = 40, droplets = \"isotropic\"", 16.0),
+        ("scale_height_m = 30, droplets = \"coarse\"", 0.3),
+        ("scale_height_m = 30, droplets = \"mist\"", 0.3),
+        ("base_height_m = 20", 0.5),
+        ("base_height_m = 20, droplets = \"mist\"", 0.5),
+        ("top_m = 40, droplets = \"cloud-c1\"", 0.4),
+        ("top_m = 40, droplets = \"isotropic\"", 0.4),
     ] {
         let text = format!("{EVENING}\nfog = {{ visibility_m = 600, {fog} }}");
         let state = State::of_scene(Scene::from_toml(&text).unwrap());
