@@ -53,12 +53,10 @@ pub struct MonteCarlo {
     blocks: Vec<Block>,
 }
 
-/// Wavelengths that share paths. Web pages do without the code of the shorter blocks, and fill part of 16 lanes.
+/// Wavelengths that share paths.
 #[derive(Clone, Debug)]
 enum Block {
-    #[cfg(not(target_arch = "wasm32"))]
     Four(usize, Box<Lanes<4>>),
-    #[cfg(not(target_arch = "wasm32"))]
     Eight(usize, Box<Lanes<8>>),
     Sixteen(usize, Box<Lanes<16>>),
 }
@@ -304,11 +302,9 @@ impl MonteCarlo {
                 number,
             );
             match block {
-                #[cfg(not(target_arch = "wasm32"))]
                 Block::Four(used, lanes) => {
                     self.block_bundle::<4, A>(lanes, *used, scene, &mut random, &mut sample)
                 }
-                #[cfg(not(target_arch = "wasm32"))]
                 Block::Eight(used, lanes) => {
                     self.block_bundle::<8, B>(lanes, *used, scene, &mut random, &mut sample)
                 }
@@ -384,9 +380,7 @@ impl Block {
         }
         let used = wavelengths_nm.len();
         match used {
-            #[cfg(not(target_arch = "wasm32"))]
             0..=4 => Self::Four(used, lanes(atmosphere, wavelengths_nm)),
-            #[cfg(not(target_arch = "wasm32"))]
             5..=8 => Self::Eight(used, lanes(atmosphere, wavelengths_nm)),
             _ => Self::Sixteen(used, lanes(atmosphere, wavelengths_nm)),
         }
