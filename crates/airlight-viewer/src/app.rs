@@ -14,6 +14,9 @@ use crate::platform::Worker;
 use crate::play::Play;
 use crate::reading::Reading;
 use crate::state::{CompareMode, History, State};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::time_lapse::{Step, TimeLapse};
+use crate::timers::Times;
 use crate::view::{Navigation, Orbit};
 use crate::widgets::choice;
 use crate::{lights, panel, reading, style, terrain, truth, view};
@@ -39,6 +42,8 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
+#[cfg(not(target_arch = "wasm32"))]
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What the field of a file takes.
@@ -121,6 +126,8 @@ pub struct Viewer {
     light: Option<Box<Light>>,
     metered: Option<(Metered, Exposure)>,
     picture: Picture,
+    /// Whether the picture has timers.
+    is_timed: bool,
     render: RenderState,
     texture: Option<TextureId>,
     drawn: Option<Drawn>,
@@ -148,6 +155,14 @@ pub struct Viewer {
     saving: Option<PendingPicture>,
     /// Whether the graphics device is gone.
     is_lost: Arc<AtomicBool>,
+    /// Where to leave what is shown when it goes.
+    #[cfg(not(target_arch = "wasm32"))]
+    left: Option<Arc<Mutex<Option<Options>>>>,
+    /// Times of the passes of the last picture, where they are wanted.
+    times: Times,
+    /// Pictures that are being saved.
+    #[cfg(not(target_arch = "wasm32"))]
+    time_lapse: Option<TimeLapse>,
 }
 
 /// Heights of a terrain's file, or why there are none.
@@ -222,6 +237,7 @@ impl Viewer {
             light: None,
             metered: None,
             picture: Picture::new(&render.device, &render.queue)?,
+            is_timed: false,
             render,
             texture: None,
             drawn: None,
@@ -240,7 +256,45 @@ impl Viewer {
             page_files: PageFiles::new(move || files.request_repaint()),
             #[cfg(target_arch = "wasm32")]
             saving: None,
+            #[cfg(not(target_arch = "wasm32"))]
+            left: None,
+            times: Times::default(),
+            #[cfg(not(target_arch = "wasm32"))]
+            time_lapse: None,
         })
+    }
+
+    /// Closes the window when the graphics device is lost, and leaves there what it showed, with which another can be opened.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn close_on_loss(&mut self, left: Arc<Mutex<Option<Options>>>) {
+        // What else reports errors of a device that is lost would end the program.
+        let is_lost = self.is_lost.clone();
+        self.render
+            .device
+            .on_uncaptured_error(Arc::new(move |error| {
+                assert!(is_lost.load(Ordering::Relaxed), "wgpu error: {error}");
+            }));
+        self.left = Some(left);
+    }
+
+    /// Leaves what is shown and closes the window once the device is lost. True if it closes, and nothing can be drawn.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn leaves(&mut self, ui: &Ui) -> bool {
+        let Some(left) = &self.left else {
+            return false;
+        };
+        if !self.is_lost.load(Ordering::Relaxed) {
+            return false;
+        }
+        if let Ok(mut left) = left.lock() {
+            *left = Some(Options {
+                state: self.state.clone(),
+                size: ui.ctx().content_rect().size().into(),
+                panel: self.has_panel,
+            });
+        }
+        ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
+        true
     }
 
     /// What the user has set.
@@ -479,10 +533,17 @@ impl Viewer {
 
     /// Shows the controls and the picture.
     pub fn show(&mut self, ui: &mut Ui) {
+        #[cfg(not(target_arch = "wasm32"))]
+        if self.leaves(ui) {
+            return;
+        }
         self.take_answers();
         self.shortcuts(ui);
         self.pass_time(ui);
         self.take_files(ui);
+        self.take_times(ui);
+        #[cfg(not(target_arch = "wasm32"))]
+        self.advance_time_lapse(ui);
         if self.has_panel {
             let facts = self.facts();
             let ev100 = self.metered.as_ref().map_or(15.0, |(_, e)| e.ev100());
@@ -500,6 +561,7 @@ impl Viewer {
                             play: &mut self.play,
                             navigation: &mut self.navigation,
                             coarseness: &mut self.coarseness,
+                            times: &mut self.times,
                         };
                         panel::show(ui, state, shown, &facts, ev100);
                     });
@@ -527,6 +589,77 @@ impl Viewer {
             let elapsed_s = f64::from(ui.input(|i| i.stable_dt.min(LONGEST_FRAME_S)));
             self.play.advance(&mut sun.time, elapsed_s);
             ui.ctx().request_repaint();
+        }
+    }
+
+    /// Turns the timers of passes on or off, and takes what they measured.
+    fn take_times(&mut self, ui: &Ui) {
+        let is_wanted = !matches!(self.times, Times::Off);
+        if is_wanted != self.is_timed {
+            self.is_timed = is_wanted;
+            if !self.picture.set_timed(is_wanted) {
+                self.times = Times::Missing;
+            }
+            // A picture to time.
+            self.drawn = None;
+        }
+        if let Some(times) = self.picture.take_times() {
+            self.times = Times::On(Some(times));
+        }
+        if self.picture.awaits_times() {
+            ui.ctx().request_repaint();
+        }
+    }
+
+    /// Shows the next picture of a time-lapse, or meters or saves the one that is shown.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn advance_time_lapse(&mut self, ui: &Ui) {
+        let Some(lapse) = &mut self.time_lapse else {
+            return;
+        };
+        ui.ctx().request_repaint();
+        let Some((scene, to_do)) = lapse.step() else {
+            let [saved, _] = lapse.progress();
+            self.state.scene = lapse.before().clone();
+            self.time_lapse = None;
+            self.notice = Some(format!("{saved} pictures are saved"));
+            return;
+        };
+        if self.state.scene != scene {
+            self.state.scene = scene;
+            return;
+        }
+        let is_lit =
+            self.asked.is_none() && self.answered.as_ref() == Some(&self.state.lit_scene());
+        if let Some(sentence) = self.error.clone().filter(|_| is_lit) {
+            return self.stop_time_lapse(sentence);
+        }
+        let (true, Some((_, exposure))) = (is_lit && self.is_drawn(), &self.metered) else {
+            return;
+        };
+        let ev100 = exposure.ev100();
+        if let Step::Save(file) = &to_do
+            && let Err(sentence) = self.save(file)
+        {
+            return self.stop_time_lapse(sentence);
+        }
+        if let Some(lapse) = &mut self.time_lapse {
+            lapse.finish_step(ev100);
+        }
+    }
+
+    /// Whether the last picture is that of the last light.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn is_drawn(&self) -> bool {
+        self.drawn.is_some_and(|(number, _)| number == self.number)
+    }
+
+    /// Ends a time-lapse before its end.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn stop_time_lapse(&mut self, sentence: String) {
+        if let Some(lapse) = self.time_lapse.take() {
+            self.state.scene = lapse.before().clone();
+            self.notice = Some(sentence);
         }
     }
 
@@ -604,6 +737,14 @@ impl Viewer {
             let name = crate::widgets::name(ui, "File", true);
             let field = egui::TextEdit::singleline(&mut self.file).desired_width(84.0);
             ui.add(field).labelled_by(name.id).on_hover_text(FILE_HELP);
+            #[cfg(not(target_arch = "wasm32"))]
+            if let Some(lapse) = &self.time_lapse {
+                let [saved, all] = lapse.progress();
+                if ui.button("Stop").clicked() {
+                    self.stop_time_lapse(format!("{saved} of {all} pictures are saved"));
+                }
+                return;
+            }
             match [ui.button("Open").clicked(), ui.button("Save").clicked()] {
                 [true, _] => self.open_file(),
                 [_, true] => self.save_file(),
@@ -623,7 +764,7 @@ impl Viewer {
 
     /// Saves the file that is named.
     fn save_file(&mut self) {
-        self.notice = self.save(self.file.clone().as_ref()).err();
+        self.notice = self.save_all(self.file.clone().as_ref()).err();
     }
 
     /// Opens a file whose contents are in memory: a scene, or heights as terrain (PNG, NPY, PFM).
@@ -681,6 +822,29 @@ impl Viewer {
             self.state = State::load(file).map_err(|error| error.to_string())?;
         }
         Ok(())
+    }
+
+    /// Saves as [`Self::save`] does, or begins to save the pictures of the scene's sequence.
+    ///
+    /// # Errors
+    /// A sentence where the file cannot be written, or the sequence cannot be drawn.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn save_all(&mut self, file: &Path) -> Result<(), String> {
+        let is_scene = file.extension().is_some_and(|ending| ending == "toml");
+        if is_scene || self.state.photograph.is_some() || self.state.scene.sequence.is_none() {
+            return self.save(file);
+        }
+        let size = self.saved_size()?;
+        let lapse = TimeLapse::new(&self.state.scene, size, file);
+        self.time_lapse = Some(lapse.map_err(|error| error.to_string())?);
+        self.play.is_on = false;
+        Ok(())
+    }
+
+    /// Whether pictures of a sequence are being saved.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn is_saving(&self) -> bool {
+        self.time_lapse.is_some()
     }
 
     /// Saves the scene as TOML, or the picture in the format of the file's ending: in the size of the scene's camera, or as large as on
@@ -917,7 +1081,11 @@ impl Viewer {
 
     /// Keeps the state for undo, once the pointer is released and time does not pass.
     fn settle(&mut self, ui: &Ui) {
-        let is_changing = self.play.is_on || ui.input(|i| i.pointer.any_down());
+        #[cfg(not(target_arch = "wasm32"))]
+        let is_saving = self.is_saving();
+        #[cfg(target_arch = "wasm32")]
+        let is_saving = false;
+        let is_changing = self.play.is_on || is_saving || ui.input(|i| i.pointer.any_down());
         if self.state != self.settled && !is_changing {
             let left = std::mem::replace(&mut self.settled, self.state.clone());
             self.history.push(left);
@@ -1187,6 +1355,11 @@ impl Viewer {
                 None => "reading …".to_owned(),
             },
             _ if self.light_error().is_some() => self.light_error().unwrap_or_default().to_owned(),
+            #[cfg(not(target_arch = "wasm32"))]
+            _ if self.time_lapse.is_some() => {
+                let [saved, all] = self.time_lapse.as_ref().map_or([0; 2], TimeLapse::progress);
+                format!("{saved} of {all} pictures are saved …")
+            }
             (Some(error), _) => error.clone(),
             (None, Some(_)) => "solving …".to_owned(),
             (None, None) => match self.judgement().filter(|_| self.has_panel) {

@@ -25,6 +25,7 @@ pub fn command_line(state: &State) -> String {
     let terrain = state.terrain.as_ref();
     let terrain = terrain.filter(|terrain| [terrain.east_m, terrain.south_m] == [0.0; 2]);
     let line = with_options(&state.scene, "view").zip(terrain);
+    let line = line.filter(|_| replaces_usual(&state.scene));
     let mut line = match line {
         Some((mut line, terrain)) => {
             let file = terrain.file.clone();
@@ -42,6 +43,16 @@ pub fn command_line(state: &State) -> String {
     line.add("--screenshot", "view.png".to_owned());
     line.words.push("--no-panel".to_owned());
     line.words.join(" ")
+}
+
+/// Whether a scene sets all that the viewer sets to begin with, as no option unsets it.
+fn replaces_usual(scene: &Scene) -> bool {
+    let (sun, camera) = (&scene.sun, &scene.camera);
+    (sun.elevation_deg.is_none() || sun.azimuth_deg.is_some())
+        && scene.observer.altitude_m.is_some()
+        && scene.air.atmosphere.is_some()
+        && camera.elevation_deg.is_some()
+        && camera.fov_deg.is_some()
 }
 
 /// The options of a scene; `None` for a scene with parts that no option sets here.
@@ -111,6 +122,15 @@ fn with_options(scene: &Scene, command: &str) -> Option<Line> {
     line.number("--saturation", output.saturation.take());
     line.number("--white-balance", output.white_balance_k.take());
     output.file = None;
+    if command == "sky"
+        && let Some(sequence) = rest.sequence.take()
+    {
+        line.text("--until", sequence.until);
+        line.text("--every", sequence.every);
+        if sequence.meter_each == Some(true) {
+            line.words.push("--meter-each".to_owned());
+        }
+    }
     (rest == Scene::default()).then_some(line)
 }
 
@@ -181,6 +201,13 @@ mod tests {
             ),
             "airlight sky --sun-elevation=30 --exposure='f/8 1/125 s ISO 100' --white-balance=5000 -o sky.png"
         );
+        let time = "sun = { latitude_deg = 48.9, longitude_deg = 2.3, time = \"2026-06-21T18:00:00+02:00\" }";
+        assert_eq!(
+            command(&format!(
+                "{time}\nsequence = {{ until = \"+2h\", every = \"90s\", meter_each = true }}"
+            )),
+            "airlight sky --at=48.9,2.3 --when=2026-06-21T18:00:00+02:00 --until=+2h --every=90s --meter-each -o sky.png"
+        );
         let from_file = "airlight sky --scene scene.toml -o sky.png";
         for scene in ["sun.refraction = false", "night.stars = true"] {
             let scene = format!("sun.elevation_deg = 3\n{scene}");
@@ -190,20 +217,28 @@ mod tests {
 
     #[test]
     fn what_the_sky_does_not_draw_is_drawn_by_the_viewer() {
+        let scene = "sun = { elevation_deg = 8, azimuth_deg = 100 }
+            observer.altitude_m = 700
+            air.atmosphere = \"clear\"
+            camera = { elevation_deg = -4, fov_deg = 60 }";
         let mut state = State {
-            scene: Scene::from_toml("sun.elevation_deg = 8").unwrap(),
+            scene: Scene::from_toml(scene).unwrap(),
             terrain: Some(Terrain::default()),
             ..Default::default()
         };
         assert_eq!(
             command_line(&state),
-            "airlight view --sun-elevation=8 --terrain=mountains --screenshot=view.png --no-panel"
+            "airlight view --sun-elevation=8 --sun-azimuth=100 --altitude-m=700 --atmosphere=clear --camera-elevation=-4 --fov=60 \
+             --terrain=mountains --screenshot=view.png --no-panel"
         );
         state.terrain = Some(Terrain {
             south_m: 300.0,
             ..Default::default()
         });
         let from_file = "airlight view scene.toml --screenshot=view.png --no-panel";
+        assert_eq!(command_line(&state), from_file);
+        // The viewer begins with an elevation of its own.
+        (state.terrain, state.scene.camera.elevation_deg) = (Some(Terrain::default()), None);
         assert_eq!(command_line(&state), from_file);
         let lights = "[[lights]]\nposition_m = [0, 3, -9]\nintensity = [1, 1, 1]";
         assert_eq!(command(lights), from_file);

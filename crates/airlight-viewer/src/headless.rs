@@ -1,15 +1,14 @@
 //! [`screenshot`]: the viewer without a window.
 
 use crate::app::{Viewer, ViewerError};
+use crate::graphics;
 use crate::options::Options;
 use airlight::spectrum::rgb::srgb_decode;
 use airlight_image::rows::StoredRows;
 use airlight_image::tone::ToneMapper;
 use airlight_image::{Control, PictureOptions, Size, write_picture};
 use eframe::egui::{self, Pos2, RawInput, Rect, vec2};
-use eframe::egui_wgpu::{
-    RenderState, RendererOptions, ScreenDescriptor, WgpuConfiguration, WgpuSetup,
-};
+use eframe::egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor};
 use eframe::wgpu;
 use std::path::Path;
 
@@ -22,12 +21,8 @@ const FRAMES: usize = 3;
 /// [`ViewerError`] without a graphics device, for a size that it cannot draw, or where the file cannot be written.
 pub fn screenshot(options: Options, file: &Path) -> Result<(), ViewerError> {
     let size = options.size.map(|v| v.round().max(1.0) as u32);
-    let setup = WgpuSetup::without_display_handle();
-    let instance = pollster::block_on(setup.new_instance());
-    let configuration = WgpuConfiguration {
-        wgpu_setup: setup,
-        ..Default::default()
-    };
+    let configuration = graphics::configuration();
+    let instance = pollster::block_on(configuration.wgpu_setup.new_instance());
     let settings = RendererOptions {
         dithering: false,
         ..Default::default()

@@ -7,7 +7,7 @@
 //! the drawing and the colours are those of the library; the viewer adds no physics.
 //!
 //! Modules, each importing only from those above it: [`state`], `terrain`, `lights`, `photograph`, `address`, `examples`, `options`, `command`,
-//! [`compute`](mod@compute), `message`, `platform`, `page_files`, `picture`, `truth`, `style`, `widgets`, `place`, `play`, `view`, `panel`, `reading`, `beside`, `app`, `headless`, `window`, `page`.
+//! [`compute`](mod@compute), `message`, `platform`, `page_files`, `timers`, `graphics`, `picture`, `time_lapse`, `truth`, `style`, `widgets`, `place`, `play`, `view`, `panel`, `reading`, `beside`, `app`, `headless`, `window`, `page`.
 
 mod address;
 mod app;
@@ -15,6 +15,8 @@ mod beside;
 mod command;
 pub mod compute;
 mod examples;
+#[cfg(not(target_arch = "wasm32"))]
+mod graphics;
 #[cfg(not(target_arch = "wasm32"))]
 mod headless;
 mod lights;
@@ -36,6 +38,9 @@ mod reading;
 pub mod state;
 mod style;
 mod terrain;
+#[cfg(not(target_arch = "wasm32"))]
+mod time_lapse;
+mod timers;
 mod truth;
 mod view;
 mod widgets;

@@ -5,6 +5,7 @@ use crate::place;
 use crate::play::{Play, SPEEDS};
 use crate::state::{ALTITUDES_M, Compare, CompareMode, State, Terrain};
 use crate::terrain::SPACING_M;
+use crate::timers::Times;
 use crate::view::{FISHEYE_FOV_DEG, FOV_DEG, Navigation, SUN_AZIMUTH_DEG};
 use crate::widgets::{Number, choice, quiet, title};
 use airlight::Named;
@@ -12,6 +13,8 @@ use airlight::atmosphere::{AerosolType, Preset};
 use airlight::axes;
 use airlight::fog::droplets::DropletKind;
 use airlight::models::registry;
+#[cfg(not(target_arch = "wasm32"))]
+use airlight::scene::SequenceSpec;
 use airlight::scene::{
     CameraExposure, CameraSpec, Exposure, FogLayerSpec, FogProfile, FogSpec, LightKind, LightSpec,
     MeteringMode, Projection, Scene, ToneKind,
@@ -19,6 +22,8 @@ use airlight::scene::{
 use airlight::sun::Moment;
 use airlight_gpu::MOST_LIGHTS;
 use airlight_render::overlay::{DepthFileKind, OverlaySpec};
+#[cfg(not(target_arch = "wasm32"))]
+use airlight_render::sequence::parse_span_s;
 use eframe::egui::{self, Ui};
 
 /// What is set besides the state.
@@ -30,6 +35,8 @@ pub struct Shown<'a> {
     pub navigation: &'a mut Navigation,
     /// Pixels of the display along a pixel of the picture.
     pub coarseness: &'a mut u32,
+    /// Times of the passes of the picture.
+    pub times: &'a mut Times,
 }
 
 /// Shows the controls; they change the state.
@@ -49,6 +56,7 @@ pub fn show(ui: &mut Ui, state: &mut State, shown: Shown<'_>, facts: &Facts, ev1
     let named = [(1, "full"), (2, "half"), (4, "a quarter")];
     let named = named.map(|(pixels, text)| (pixels, text.to_owned()));
     choice(ui, "Resolution", shown.coarseness, &named);
+    timing(ui, shown.times);
     compare(ui, state);
 }
 
@@ -101,6 +109,8 @@ fn sun(ui: &mut Ui, state: &mut State, play: &mut Play, facts: &Facts) {
         place::map(ui, sun);
         time(ui, &mut sun.time);
         passing(ui, play);
+        #[cfg(not(target_arch = "wasm32"))]
+        time_lapse(ui, &mut state.scene.sequence);
         quiet(
             ui,
             format!(
@@ -137,6 +147,56 @@ fn passing(ui: &mut Ui, play: &mut Play) {
     let text = if play.is_on { "Pause" } else { "Play" };
     if ui.button(text).clicked() {
         play.is_on = !play.is_on;
+    }
+}
+
+/// Times of pictures that are saved together.
+#[cfg(not(target_arch = "wasm32"))]
+fn time_lapse(ui: &mut Ui, sequence: &mut Option<SequenceSpec>) {
+    let mut is_set = sequence.is_some();
+    let help = "\"Save\" writes pictures of a range of times from this one on, as NAME.0001.png and so on.";
+    let set = ui.checkbox(&mut is_set, "Time-lapse").on_hover_text(help);
+    if set.changed() {
+        *sequence = is_set.then(|| SequenceSpec {
+            until: Some("+6h".to_owned()),
+            every: Some("10m".to_owned()),
+            ..Default::default()
+        });
+    }
+    let Some(sequence) = sequence else {
+        return;
+    };
+    let seconds = |span: Option<&str>| parse_span_s(span?).ok().map(|span_s| span_s as f64);
+    let until = sequence.until.as_deref();
+    let lasts_s = seconds(until.and_then(|until| until.trim().strip_prefix('+')));
+    let every_s = seconds(sequence.every.as_deref());
+    if let Some(lasts_s) = lasts_s {
+        let mut hours = lasts_s / 3600.0;
+        let number = Number::new("Lasts", " h", 0.1..=48.0).logarithmic();
+        if number.show(ui, &mut hours) {
+            let minutes = (60.0 * hours).round().max(1.0);
+            sequence.until = Some(format!("+{minutes}m"));
+        }
+    } else {
+        quiet(ui, format!("until {}", until.unwrap_or("then")));
+    }
+    let mut minutes = every_s.unwrap_or(600.0) / 60.0;
+    let number = Number::new("Every", " min", 0.1..=120.0).logarithmic();
+    if number.show(ui, &mut minutes) {
+        let seconds = (60.0 * minutes).round().max(1.0);
+        sequence.every = Some(format!("{seconds}s"));
+    }
+    let mut meters_each = sequence.meter_each == Some(true);
+    let meter = ui.checkbox(&mut meters_each, "Meter each picture");
+    let help = "Otherwise all are exposed as the brightest of the first, the middle and the last.";
+    if meter.on_hover_text(help).changed() {
+        sequence.meter_each = meters_each.then_some(true);
+    }
+    if let (Some(lasts_s), Some(every_s)) = (lasts_s, every_s) {
+        quiet(
+            ui,
+            format!("{} pictures", (lasts_s / every_s).floor() + 1.0),
+        );
     }
 }
 
@@ -749,6 +809,29 @@ fn display(ui: &mut Ui, state: &mut State, metered_ev100: f64) {
         .decimals(0)
         .help("Colour temperature of the light that is shown as neutral.")
         .show_optional(ui, &mut output.white_balance_k, 6504.0);
+}
+
+/// Times of the passes on the device.
+fn timing(ui: &mut Ui, times: &mut Times) {
+    let mut is_on = *times != Times::Off;
+    if ui.checkbox(&mut is_on, "Time the passes").changed() {
+        *times = match is_on {
+            true => Times::On(None),
+            false => Times::Off,
+        };
+    }
+    match times {
+        Times::Off => {}
+        Times::Missing => quiet(ui, "This graphics device has no timers.".to_owned()),
+        Times::On(None) => quiet(ui, "timing …".to_owned()),
+        Times::On(Some(times)) => quiet(
+            ui,
+            format!(
+                "ground {:.2} ms, air {:.2} ms, tone {:.2} ms",
+                times.ground_ms, times.air_ms, times.tone_ms
+            ),
+        ),
+    }
 }
 
 fn compare(ui: &mut Ui, state: &mut State) {

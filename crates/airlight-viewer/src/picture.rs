@@ -1,6 +1,7 @@
 //! [`Picture`]: the light of a frame on the graphics device, and what of it is shown.
 
 use crate::compute::Light;
+use crate::timers::{PassTimers, PassTimes};
 use airlight::fog::lights::Light as FogLight;
 use airlight::scene::OutputSpec;
 use airlight_gpu::{
@@ -139,6 +140,7 @@ pub struct Picture {
     eye_m: [f64; 2],
     tone: TonePass,
     targets: Option<Targets>,
+    timers: Option<PassTimers>,
 }
 
 /// Textures of one size.
@@ -164,6 +166,7 @@ impl Picture {
             eye_m: [0.0; 2],
             tone: TonePass::new(device, SHOWN),
             targets: None,
+            timers: None,
         })
     }
 
@@ -197,30 +200,64 @@ impl Picture {
         if is_new {
             self.targets = Some(self.new_targets(shot));
         }
+        let timers = self.timers.as_ref().filter(|timers| !timers.is_reading());
+        let is_timed = timers.is_some();
         if let Some(targets) = &self.targets {
-            self.draw_into(targets, shot);
+            self.draw_into(targets, shot, timers);
+        }
+        if let Some(timers) = self.timers.as_mut().filter(|_| is_timed) {
+            timers.read();
         }
         is_new
     }
 
-    fn draw_into(&self, targets: &Targets, shot: &Shot) {
+    /// Times the passes of pictures from now on, or no longer. False if the device has no timers.
+    pub fn set_timed(&mut self, is_timed: bool) -> bool {
+        let timers = || PassTimers::new(&self.device, &self.queue);
+        self.timers = is_timed.then(timers).flatten();
+        self.timers.is_some() == is_timed
+    }
+
+    /// Times of the passes of the last picture that was timed, once they are there.
+    pub fn take_times(&mut self) -> Option<PassTimes> {
+        self.timers.as_mut()?.take(&self.device)
+    }
+
+    /// Whether times are on their way from the device.
+    pub fn awaits_times(&self) -> bool {
+        self.timers.as_ref().is_some_and(PassTimers::is_reading)
+    }
+
+    fn draw_into(&self, targets: &Targets, shot: &Shot, timers: Option<&PassTimers>) {
         let mut encoder = self
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor {
                 label: Some("airlight viewer"),
             });
+        let stamp = |encoder: &mut wgpu::CommandEncoder, passes| {
+            if let Some(timers) = timers {
+                timers.stamp(encoder, passes);
+            }
+        };
+        stamp(&mut encoder, 0);
         clear(&mut encoder, targets);
-        if let Some(camera) = shot.camera() {
-            self.draw_ground(&mut encoder, targets, shot, &camera);
-            self.sky
-                .record(&mut encoder, &targets.light_view, &targets.depth, &camera);
+        let camera = shot.camera();
+        if let Some(camera) = &camera {
+            self.draw_ground(&mut encoder, targets, shot, camera);
         }
+        stamp(&mut encoder, 1);
+        if let Some(camera) = &camera {
+            let (light, depth) = (&targets.light_view, &targets.depth);
+            self.sky.record(&mut encoder, light, depth, camera);
+        }
+        stamp(&mut encoder, 2);
         self.tone.record(
             &mut encoder,
             &targets.light_view,
             &targets.shown_view,
             &shot.tone,
         );
+        stamp(&mut encoder, 3);
         self.queue.submit([encoder.finish()]);
     }
 
@@ -315,7 +352,7 @@ impl Picture {
             ));
         }
         let targets = self.new_targets(shot);
-        self.draw_into(&targets, shot);
+        self.draw_into(&targets, shot, None);
         Ok(targets)
     }
 

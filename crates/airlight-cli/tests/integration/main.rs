@@ -12,3 +12,5 @@ mod probe;
 mod refusals;
 mod sky;
 mod sky_fog;
+#[cfg(feature = "view")]
+mod view;

@@ -27,7 +27,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 const SIZE: [f32; 2] = [640.0, 420.0];
 
@@ -975,6 +975,95 @@ fn a_lost_device_is_reported() {
     window.step();
     let error = window.state().error().unwrap();
     assert!(error.contains("device was lost"), "{error}");
+}
+
+/// What a window showed whose device is lost, in another window.
+#[test]
+fn a_window_is_opened_again_when_its_device_is_lost() {
+    let mut options = options(EVENING);
+    options.state.scene.observer.altitude_m = Some(900.0);
+    options.state.terrain = Some(Terrain::default());
+    let mut window = window(options);
+    settle(&mut window);
+    let mut state = window.state().state().clone();
+    state.scene.camera.azimuth_deg = Some(215.0);
+    window.state_mut().set_state(state.clone());
+    settle(&mut window);
+    let before = window.state().pixels().unwrap();
+    let left = Arc::new(Mutex::new(None));
+    window.state_mut().close_on_loss(left.clone());
+    window.step();
+    assert!(left.lock().unwrap().is_none());
+    let device = window.state().device().clone();
+    device.destroy();
+    let _ = device.poll(eframe::wgpu::PollType::wait_indefinitely());
+    window.step();
+    let options = left.lock().unwrap().take().unwrap();
+    assert_eq!((&options.state, options.size), (&state, SIZE));
+    let mut again = self::window(options);
+    settle(&mut again);
+    assert!(again.state().pixels().unwrap() == before);
+}
+
+#[test]
+fn a_device_without_timers_says_so() {
+    let mut options = options(EVENING);
+    // Room for all controls.
+    options.size = [640.0, 1600.0];
+    let mut window = window(options);
+    settle(&mut window);
+    window.get_by_label("Time the passes").click_accesskit();
+    window.step();
+    window.step();
+    window.get_by_label("This graphics device has no timers.");
+}
+
+/// The pictures of a time-lapse, with the names and the light of those of the program.
+#[test]
+fn a_time_lapse_is_saved_picture_by_picture() {
+    let folder = std::env::temp_dir().join(format!("airlight-lapse-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let scene = "
+        sun = { latitude_deg = 48.9, longitude_deg = 2.3, time = \"2026-06-21T18:30:00+02:00\" }
+        air.atmosphere = \"clear\"
+        camera = { azimuth_deg = 40, elevation_deg = 30, size = [24, 16] }
+        sequence = { until = \"+2h\", every = \"1h\" }";
+    let mut window = window(options(scene));
+    settle(&mut window);
+    let before = window.state().state().clone();
+    let file = folder.join("sky.exr");
+    window.state_mut().save_all(&file).unwrap();
+    for _ in 0..100 {
+        if !window.state().is_saving() {
+            break;
+        }
+        window.step();
+        window.state_mut().wait();
+    }
+    assert_eq!(window.state().state(), &before);
+    let mut scene = before.scene;
+    scene.output.file = Some(file.display().to_string());
+    let renderer = Renderer::new(&scene).unwrap();
+    let sequence = renderer.sequence().unwrap().unwrap();
+    assert_eq!(sequence.steps().len(), 3);
+    for step in sequence.steps() {
+        let sun = renderer.sun(Some(step.time)).unwrap();
+        let prepared = renderer.prepare(renderer.suns_near(&sun), Control::default());
+        let frame = renderer.frame(prepared.unwrap().as_ref(), Some(step.time));
+        let frame = frame.unwrap();
+        let right = frame.pixels(&renderer.layout().only_frame().unwrap(), Layer::All);
+        let saved = read_picture(&step.path, None).unwrap();
+        let mut worst = 0.0f32;
+        for (got, right) in saved.rgb.as_chunks::<3>().0.iter().zip(&right) {
+            worst = worst.max((got[1] / right[1] - 1.0).abs());
+        }
+        println!(
+            "{}: sun at {:.2} degrees, worst {worst:.4}",
+            step.time, sun.elevation_deg
+        );
+        assert!(worst < 0.02, "{} {worst}", step.time);
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
 }
 
 #[test]
