@@ -9,7 +9,7 @@ use crate::options::Options;
 use crate::page_files::{self, PageFile, PageFiles, PendingPicture};
 #[cfg(not(target_arch = "wasm32"))]
 use crate::photograph::{self, FoggedPhotograph, PhotographWorker};
-use crate::picture::{Ground, Picture, Shot, tone_mapper, tone_of};
+use crate::picture::{Ground, HAS_SHADOWS, Picture, Shot, tone_mapper, tone_of};
 use crate::platform::Worker;
 use crate::play::Play;
 use crate::reading::Reading;
@@ -102,8 +102,8 @@ pub struct Viewer {
     history: History,
     has_panel: bool,
     play: Play,
-    /// Pixels of the display along a pixel of the picture: more draw faster.
-    coarseness: u32,
+    /// Pixels of the picture along a pixel of the display: fewer draw faster, more smooth the edges of terrain.
+    resolution: f32,
     navigation: Navigation,
     dragged: Option<view::Handle>,
     worker: Worker,
@@ -119,9 +119,9 @@ pub struct Viewer {
     library_picture: Option<(Scene, Shot, egui::TextureHandle)>,
     number: u64,
     /// The scene that light is being computed for.
-    asked: Option<Scene>,
+    asked: Option<Lit>,
     /// The scene that was answered last, with light or not.
-    answered: Option<Scene>,
+    answered: Option<Lit>,
     error: Option<String>,
     light: Option<Box<Light>>,
     metered: Option<(Metered, Exposure)>,
@@ -177,6 +177,9 @@ struct LoadedTerrain {
 /// What an exposure was metered for: the number of the light, projection and settings.
 type Metered = (u64, Frame, OutputSpec);
 
+/// What light is solved for: the scene, and whether it has terrain that throws shadows.
+type Lit = (Scene, bool);
+
 /// What the picture was drawn for: the number of the light and the shot.
 type Drawn = (u64, Shot);
 
@@ -221,7 +224,7 @@ impl Viewer {
             history: History::default(),
             has_panel: options.panel,
             play: Play::default(),
-            coarseness: 1,
+            resolution: 1.0,
             navigation: Navigation::default(),
             dragged: None,
             worker: Worker::new(move || repaint.request_repaint()),
@@ -323,10 +326,20 @@ impl Viewer {
         if let Some(scene) = self.fogged() {
             return self.photographs.is_current(&scene);
         }
-        let has_light =
-            self.asked.is_none() && self.answered.as_ref() == Some(&self.state.lit_scene());
+        let has_light = self.is_lit();
         let beside = self.beside.as_ref().zip(self.wanted());
         has_light && beside.is_none_or(|(beside, wanted)| beside.is_current(&wanted))
+    }
+
+    /// What light the state needs.
+    fn lit(&self) -> Lit {
+        let has_shadows = HAS_SHADOWS && self.state.terrain.is_some();
+        (self.state.lit_scene(), has_shadows)
+    }
+
+    /// Whether the last answer is that of the state.
+    fn is_lit(&self) -> bool {
+        self.asked.is_none() && self.answered.as_ref() == Some(&self.lit())
     }
 
     /// The device that draws.
@@ -560,7 +573,7 @@ impl Viewer {
                         let shown = panel::Shown {
                             play: &mut self.play,
                             navigation: &mut self.navigation,
-                            coarseness: &mut self.coarseness,
+                            resolution: &mut self.resolution,
                             times: &mut self.times,
                         };
                         panel::show(ui, state, shown, &facts, ev100);
@@ -629,8 +642,7 @@ impl Viewer {
             self.state.scene = scene;
             return;
         }
-        let is_lit =
-            self.asked.is_none() && self.answered.as_ref() == Some(&self.state.lit_scene());
+        let is_lit = self.is_lit();
         if let Some(sentence) = self.error.clone().filter(|_| is_lit) {
             return self.stop_time_lapse(sentence);
         }
@@ -764,7 +776,12 @@ impl Viewer {
 
     /// Saves the file that is named.
     fn save_file(&mut self) {
-        self.notice = self.save_all(self.file.clone().as_ref()).err();
+        let file = self.file.clone();
+        #[cfg(not(target_arch = "wasm32"))]
+        let saved = self.save_all(file.as_ref());
+        #[cfg(target_arch = "wasm32")]
+        let saved = self.save(file.as_ref());
+        self.notice = saved.err();
     }
 
     /// Opens a file whose contents are in memory: a scene, or heights as terrain (PNG, NPY, PFM).
@@ -985,7 +1002,7 @@ impl Viewer {
         Some(Wanted {
             number: self.number,
             light,
-            scene: self.answered.as_ref()?,
+            scene: self.answered.as_ref().map(|(scene, _)| scene)?,
             frame: shot.frame,
             target: self.direction.map(|direction| Target {
                 direction: direction.to_array(),
@@ -1045,15 +1062,16 @@ impl Viewer {
 
     /// Asks for the light of the state, unless other light is being computed.
     fn ask(&mut self) {
-        let scene = self.state.lit_scene();
-        if self.asked.is_none() && self.answered.as_ref() != Some(&scene) {
+        let lit = self.lit();
+        if self.asked.is_none() && self.answered.as_ref() != Some(&lit) {
+            let (scene, has_terrain) = lit.clone();
             let request = Request {
                 number: self.number + 1,
-                scene: scene.clone(),
-                task: Task::Light,
+                scene,
+                task: Task::Light { has_terrain },
             };
             match self.worker.send(request) {
-                true => self.asked = Some(scene),
+                true => self.asked = Some(lit),
                 false => self.error = Some("expected a thread that computes, got none".to_owned()),
             }
         }
@@ -1097,7 +1115,7 @@ impl Viewer {
     fn show_picture(&mut self, ui: &mut Ui) {
         let area = ui.available_rect_before_wrap();
         let rect = view::part_of(area, &self.state);
-        let scale = ui.pixels_per_point() / self.coarseness as f32;
+        let scale = self.pixels_per_point(ui, rect);
         let size = [rect.width(), rect.height()].map(|v| ((v * scale).round() as u32).max(1));
         match view::frame_of(&self.state, size, self.facts().sun_azimuth_deg) {
             Ok(frame) => {
@@ -1114,6 +1132,13 @@ impl Viewer {
         {
             self.direction = None;
         }
+    }
+
+    /// Pixels of the picture along a point: as many as the device can draw at most.
+    fn pixels_per_point(&self, ui: &Ui, rect: Rect) -> f32 {
+        let largest = self.render.device.limits().max_texture_dimension_2d as f32;
+        let most = largest / rect.size().max_elem().max(1.0);
+        (ui.pixels_per_point() * self.resolution).min(most)
     }
 
     /// Shows the photograph in fog, as large as fits.
@@ -1169,8 +1194,7 @@ impl Viewer {
         }
         if let Some(texture) = self.texture {
             let size = [frame.size().width(), frame.size().height()];
-            let scale = ui.pixels_per_point() / self.coarseness as f32;
-            // Texels lie on pixels, one on each or one on several.
+            let scale = self.pixels_per_point(ui, rect);
             let shown = vec2(size[0] as f32, size[1] as f32) / scale;
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             let at = Rect::from_min_size(rect.min, shown);
@@ -1217,7 +1241,12 @@ impl Viewer {
             return;
         };
         let mut renderer = self.render.renderer.write();
-        let (device, filter) = (&self.render.device, wgpu::FilterMode::Nearest);
+        // Texels lie on pixels, one on each or on several, or several on each, whose mean is shown.
+        let filter = match self.resolution > 1.0 {
+            true => wgpu::FilterMode::Linear,
+            false => wgpu::FilterMode::Nearest,
+        };
+        let device = &self.render.device;
         match self.texture {
             Some(texture) => {
                 renderer.update_egui_texture_from_wgpu_texture(device, shown, filter, texture);

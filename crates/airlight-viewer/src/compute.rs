@@ -53,7 +53,10 @@ pub struct Request {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Task {
     /// What frames are drawn with.
-    Light,
+    Light {
+        /// Whether terrain throws shadows into air and fog.
+        has_terrain: bool,
+    },
     /// The spectrum of the solver at a point of the picture.
     Spectrum(Target),
     /// Colours of a solver or a published model.
@@ -229,6 +232,8 @@ struct Solved {
     solver_settings: SolverSpec,
     atmosphere: Atmosphere,
     solver: SkySolver,
+    /// The same with what shadows of terrain need, once there is terrain.
+    shadowed: Option<SkySolver>,
 }
 
 /// Why there is no light.
@@ -251,8 +256,8 @@ impl Computer {
     pub fn compute(&mut self, request: &Request) -> Answer {
         let scene = &request.scene;
         let result = match &request.task {
-            Task::Light => self
-                .light(scene)
+            Task::Light { has_terrain } => self
+                .light(scene, *has_terrain)
                 .map(|light| Output::Light(Box::new(light))),
             Task::Spectrum(target) => self.spectrum(scene, target).map(Output::Spectrum),
             Task::Colours {
@@ -445,12 +450,16 @@ impl Computer {
         self.colours(scene, registry::DEFAULT, &directions, 0)
     }
 
-    fn light(&mut self, scene: &Scene) -> Result<Light, Refusal> {
+    fn light(&mut self, scene: &Scene, has_terrain: bool) -> Result<Light, Refusal> {
         let resolved = scene.resolve()?;
         let sun = resolved.sun.at_start()?;
         let altitude_m = resolved.observer_altitude_m;
         let fog = fog(&resolved)?;
-        let solver = self.solver(scene, &resolved, &sun)?;
+        let solved = self.solved(scene, &resolved, &sun)?;
+        let solver = match has_terrain {
+            true => solved.shadowed()?,
+            false => &solved.solver,
+        };
         let tables = solver.tables(altitude_m, sun.state(), fog.as_ref())?;
         let contrast = scene.air.visibility_contrast();
         let facts = facts(&resolved, &sun, &tables, contrast);
@@ -458,12 +467,12 @@ impl Computer {
     }
 
     /// A sky that covers the scene. The first one of an air is solved for its sun alone, the second for all suns, as the sun moves.
-    fn solver(
+    fn solved(
         &mut self,
         scene: &Scene,
         resolved: &ResolvedScene,
         sun: &SunAngles,
-    ) -> Result<&SkySolver, Refusal> {
+    ) -> Result<&mut Solved, Refusal> {
         let altitude_m = resolved.observer_altitude_m;
         let is_same = |solved: &&mut Solved| {
             solved.air == scene.air
@@ -484,9 +493,20 @@ impl Computer {
                 solver_settings: scene.solver.clone(),
                 atmosphere: resolved.atmosphere.clone(),
                 solver: SkySolver::new(&resolved.atmosphere, &settings, SPACE)?,
+                shadowed: None,
             });
         }
-        Ok(&self.solved.as_ref().expect("a sky that was solved").solver)
+        Ok(self.solved.as_mut().expect("a sky that was solved"))
+    }
+}
+
+impl Solved {
+    /// The sky with what shadows of terrain need.
+    fn shadowed(&mut self) -> Result<&SkySolver, SkyRendererError> {
+        if self.shadowed.is_none() {
+            self.shadowed = Some(self.solver.clone().with_shadows()?);
+        }
+        Ok(self.shadowed.as_ref().unwrap_or(&self.solver))
     }
 }
 

@@ -135,7 +135,10 @@ structs! {
 impl Bytes for Task {
     fn put(&self, bytes: &mut Vec<u8>) {
         match self {
-            Self::Light => 0u8.put(bytes),
+            Self::Light { has_terrain } => {
+                0u8.put(bytes);
+                has_terrain.put(bytes);
+            }
             Self::Spectrum(target) => {
                 1u8.put(bytes);
                 target.put(bytes);
@@ -155,7 +158,9 @@ impl Bytes for Task {
     }
     fn take(bytes: &mut &[u8]) -> Option<Self> {
         match u8::take(bytes)? {
-            0 => Some(Self::Light),
+            0 => Some(Self::Light {
+                has_terrain: Bytes::take(bytes)?,
+            }),
             1 => Bytes::take(bytes).map(Self::Spectrum),
             2 => Some(Self::Colours {
                 model: Bytes::take(bytes)?,
@@ -348,7 +353,8 @@ mod tests {
             })
         };
         let tasks = [
-            Task::Light,
+            Task::Light { has_terrain: false },
+            Task::Light { has_terrain: true },
             spectrum(None),
             spectrum(Some(GroundLight {
                 distance_m: 900.0,

@@ -33,8 +33,8 @@ pub struct Shown<'a> {
     pub play: &'a mut Play,
     /// What dragging does.
     pub navigation: &'a mut Navigation,
-    /// Pixels of the display along a pixel of the picture.
-    pub coarseness: &'a mut u32,
+    /// Pixels of the picture along a pixel of the display.
+    pub resolution: &'a mut f32,
     /// Times of the passes of the picture.
     pub times: &'a mut Times,
 }
@@ -53,9 +53,14 @@ pub fn show(ui: &mut Ui, state: &mut State, shown: Shown<'_>, facts: &Facts, ev1
     lights(ui, state, facts);
     ground(ui, state);
     display(ui, state, ev100);
-    let named = [(1, "full"), (2, "half"), (4, "a quarter")];
+    let named = [
+        (2.0, "double"),
+        (1.0, "full"),
+        (0.5, "half"),
+        (0.25, "a quarter"),
+    ];
     let named = named.map(|(pixels, text)| (pixels, text.to_owned()));
-    choice(ui, "Resolution", shown.coarseness, &named);
+    choice(ui, "Resolution", shown.resolution, &named);
     timing(ui, shown.times);
     compare(ui, state);
 }

@@ -5,8 +5,8 @@ use crate::timers::{PassTimers, PassTimes};
 use airlight::fog::lights::Light as FogLight;
 use airlight::scene::OutputSpec;
 use airlight_gpu::{
-    Camera, HeightField, SkyPasses, SkyRendererError, TerrainPass, TerrainView, ToneCurve,
-    TonePass, ToneSettings,
+    Camera, HeightField, SkyPasses, SkyRendererError, SunShadows, TerrainPass, TerrainView,
+    ToneCurve, TonePass, ToneSettings,
 };
 use airlight_image::tone::{self, ToneMapper, WhiteBalance};
 use airlight_image::{Frame, Projection};
@@ -19,6 +19,8 @@ const LIGHT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Formats of the depth without ground, and with it.
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 const GROUND_DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+/// Whether terrain throws shadows into air and fog: on a desktop. In a page, whose device may be slow, it does not.
+pub const HAS_SHADOWS: bool = cfg!(not(target_arch = "wasm32"));
 /// Distance of the near plane, m.
 const NEAR_M: f32 = 0.1;
 /// Albedo of meadows and woods in linear sRGB, and of rock.
@@ -200,14 +202,16 @@ impl Picture {
         if is_new {
             self.targets = Some(self.new_targets(shot));
         }
-        let timers = self.timers.as_ref().filter(|timers| !timers.is_reading());
-        let is_timed = timers.is_some();
-        if let Some(targets) = &self.targets {
-            self.draw_into(targets, shot, timers);
+        let (targets, mut timers) = (self.targets.take(), self.timers.take());
+        let free = timers.as_ref().filter(|timers| !timers.is_reading());
+        let is_timed = free.is_some();
+        if let Some(targets) = &targets {
+            self.draw_into(targets, shot, free);
         }
-        if let Some(timers) = self.timers.as_mut().filter(|_| is_timed) {
+        if let Some(timers) = timers.as_mut().filter(|_| is_timed) {
             timers.read();
         }
+        (self.targets, self.timers) = (targets, timers);
         is_new
     }
 
@@ -228,7 +232,7 @@ impl Picture {
         self.timers.as_ref().is_some_and(PassTimers::is_reading)
     }
 
-    fn draw_into(&self, targets: &Targets, shot: &Shot, timers: Option<&PassTimers>) {
+    fn draw_into(&mut self, targets: &Targets, shot: &Shot, timers: Option<&PassTimers>) {
         let mut encoder = self
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor {
@@ -242,13 +246,15 @@ impl Picture {
         stamp(&mut encoder, 0);
         clear(&mut encoder, targets);
         let camera = shot.camera();
-        if let Some(camera) = &camera {
-            self.draw_ground(&mut encoder, targets, shot, camera);
-        }
+        let shadows = camera
+            .as_ref()
+            .and_then(|camera| self.draw_ground(&mut encoder, targets, shot, camera));
         stamp(&mut encoder, 1);
         if let Some(camera) = &camera {
             let (light, depth) = (&targets.light_view, &targets.depth);
-            self.sky.record(&mut encoder, light, depth, camera);
+            let shadows = shadows.as_ref();
+            self.sky
+                .record_shadowed(&mut encoder, light, depth, camera, shadows);
         }
         stamp(&mut encoder, 2);
         self.tone.record(
@@ -261,21 +267,19 @@ impl Picture {
         self.queue.submit([encoder.finish()]);
     }
 
+    /// Draws the ground. The shadows that it throws into air and fog, if there are any.
     fn draw_ground(
-        &self,
+        &mut self,
         encoder: &mut wgpu::CommandEncoder,
         targets: &Targets,
         shot: &Shot,
         camera: &Camera,
-    ) {
-        let (Some(ground), Some(pass)) = (&shot.ground, &self.terrain) else {
-            return;
-        };
-        let Some(view) = self.terrain_view(ground) else {
-            return;
-        };
+    ) -> Option<SunShadows> {
+        let view = self.terrain_view(shot.ground.as_ref()?)?;
+        let pass = self.terrain.as_mut()?;
         let (light, depth) = (&targets.light_view, &targets.depth);
         pass.record(encoder, light, depth, camera, &view);
+        pass.shadows(encoder, &view).filter(|_| HAS_SHADOWS)
     }
 
     /// Height of the eye above the ground of the planet, and the radius of the planet, m.
@@ -318,8 +322,9 @@ impl Picture {
     /// # Errors
     /// A sentence where the device cannot draw it or does not return it.
     #[cfg(not(target_arch = "wasm32"))]
-    pub fn light_of(&self, shot: &Shot) -> Result<Vec<[f32; 3]>, String> {
-        self.light_in(&self.drawn_targets(shot)?)
+    pub fn light_of(&mut self, shot: &Shot) -> Result<Vec<[f32; 3]>, String> {
+        let targets = self.drawn_targets(shot)?;
+        self.light_in(&targets)
     }
 
     /// The same without waiting for the device; `wake` is called when it is there.
@@ -328,7 +333,7 @@ impl Picture {
     /// A sentence where the device cannot draw it.
     #[cfg(target_arch = "wasm32")]
     pub fn pending_light_of(
-        &self,
+        &mut self,
         shot: &Shot,
         wake: impl FnOnce() + Send + 'static,
     ) -> Result<airlight_gpu::PendingPixels, String> {
@@ -343,7 +348,7 @@ impl Picture {
     }
 
     /// Targets of their own with a shot.
-    fn drawn_targets(&self, shot: &Shot) -> Result<Targets, String> {
+    fn drawn_targets(&mut self, shot: &Shot) -> Result<Targets, String> {
         let largest = self.device.limits().max_texture_dimension_2d;
         let [width, height] = shot.size();
         if width.max(height) > largest {

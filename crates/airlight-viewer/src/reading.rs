@@ -3,6 +3,7 @@
 use crate::compute::{Facts, SPACE, Spectrum};
 use crate::style::{ACCENT, QUIET};
 use crate::truth;
+use crate::widgets::quiet;
 use airlight::axes;
 use airlight::glam::DVec3;
 use eframe::egui::{self, Align2, Color32, FontId, Pos2, Sense, Stroke, Ui, pos2, vec2};
@@ -52,6 +53,9 @@ fn numbers(ui: &mut Ui, reading: &Reading<'_>) {
         Some(spectrum) => {
             plot(ui, spectrum);
             colour(ui, spectrum, reading.drawn);
+            if reading.ground.is_some() {
+                quiet(ui, "by the solver's air, which has no shadows".to_owned());
+            }
         }
         None => {
             ui.label("solving …");
