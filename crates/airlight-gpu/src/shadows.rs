@@ -2,8 +2,6 @@
 
 use crate::gpu_tables::{self, FLAT};
 use crate::pass::{UNIFORM, bind_group, group_layout, texture, uniform};
-use crate::terrain::Heights;
-use airlight::glam::DVec3;
 use glam::Mat4;
 
 /// Where the sun is hidden, for [`SkyPasses::record_shadowed`](crate::SkyPasses::record_shadowed): by the ground of a
@@ -101,22 +99,18 @@ impl SunShadows {
         }
     }
 
-    /// Shadows of ground by the height of their surface, for an eye at a place of the grid, m.
+    /// Shadows of ground by the height of their surface, with the numbers of the shader's struct `Shadow`.
     pub(crate) fn of_ground(
         device: &wgpu::Device,
-        (heights, sampler): (&Heights, &wgpu::Sampler),
+        sampler: &wgpu::Sampler,
         surface: &wgpu::TextureView,
-        (eye_m, planet_radius_m): (DVec3, f64),
+        numbers: &[f32],
     ) -> Self {
-        let mut numbers = eye_m.as_vec3().to_array().to_vec();
-        numbers.push(planet_radius_m as f32);
-        numbers.extend(heights.extent_m);
-        numbers.extend([heights.highest_m, 0.0]);
         let layout = Caster::Ground.layout(device);
         let views = std::slice::from_ref(surface);
         Self {
             caster: Caster::Ground,
-            group: gpu_tables::bind(device, &layout, &numbers, sampler, views),
+            group: gpu_tables::bind(device, &layout, numbers, sampler, views),
         }
     }
 

@@ -200,13 +200,13 @@ pub struct TerrainPass {
 
 /// A height field on the device.
 #[derive(Debug)]
-pub struct Heights {
+struct Heights {
     view: wgpu::TextureView,
     size: [u32; 2],
-    pub extent_m: [f32; 2],
+    extent_m: [f32; 2],
     /// The smaller distance between posts.
     spacing_m: f32,
-    pub highest_m: f32,
+    highest_m: f32,
     steepest: f32,
 }
 
@@ -316,11 +316,15 @@ impl TerrainPass {
                 self.shadow_surface.insert((sun, target))
             }
         };
+        let mut numbers = view.eye_m.as_vec3().to_array().to_vec();
+        numbers.push(view.planet_radius_m as f32);
+        numbers.extend(heights.extent_m);
+        numbers.extend([heights.highest_m, 0.0]);
         Some(SunShadows::of_ground(
             &self.device,
-            (heights, &self.sampler),
+            &self.sampler,
             surface,
-            (view.eye_m, view.planet_radius_m),
+            &numbers,
         ))
     }
 
