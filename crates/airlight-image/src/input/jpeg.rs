@@ -256,25 +256,3 @@ fn failed(error: DecodeErrors) -> DecodeError {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::sync::atomic::{AtomicBool, Ordering};
-
-    #[test]
-    fn bytes_end_soon_after_cancellation() {
-        let cancel = AtomicBool::new(false);
-        let mut bytes = TrackedBytes::new(vec![1; 1 << 20], Control::cancelled_by(&cancel));
-        let mut four = [0; 4];
-        for _ in 0..100_000 {
-            bytes.read_exact_bytes(&mut four).unwrap();
-        }
-        cancel.store(true, Ordering::Relaxed);
-        let mut read = || bytes.read_exact_bytes(&mut four);
-        let more = (0..).take_while(|_| read().is_ok()).count();
-        assert!(more < TrackedBytes::INTERVAL as usize, "{more}");
-        assert!(read().is_err());
-        assert!(bytes.is_eof().is_err());
-    }
-}

@@ -22,6 +22,7 @@ use std::{
         Mutex,
         atomic::{AtomicBool, Ordering},
     },
+    time::Duration,
 };
 
 fn write_to(path: &Path, size: Size, source: &dyn RowSource) -> Result<Written, ImageError> {
@@ -118,6 +119,32 @@ fn a_cancelled_write_leaves_nothing() {
         assert_eq!(fs::read(&path).unwrap(), b"before");
     }
     assert_eq!(folder.names("").len(), 4);
+}
+
+/// Wherever it is cancelled, a reader says so, not that the file is corrupt.
+#[test]
+fn a_reader_is_cancelled_on_its_way() {
+    let folder = Folder::new();
+    let size = size(1500, 1000);
+    let (tone, options) = (tone(), PictureOptions::default());
+    for ending in ["exr", "hdr", "png", "jpg"] {
+        let path = folder.file(format!("sky.{ending}"));
+        let rows = sky(size, 3);
+        write_picture(&path, size, &rows, &tone, &options, Control::default()).unwrap();
+        for delay_ms in [0, 3, 10, 30] {
+            let cancel = AtomicBool::new(false);
+            let error = std::thread::scope(|scope| {
+                scope.spawn(|| {
+                    std::thread::sleep(Duration::from_millis(delay_ms));
+                    cancel.store(true, Ordering::Relaxed);
+                });
+                let read = || read_picture_with(&path, None, Control::cancelled_by(&cancel)).err();
+                std::iter::repeat_with(read).find_map(|error| error)
+            });
+            let error = error.unwrap();
+            assert!(error.is_cancelled(), "{ending}: {error}");
+        }
+    }
 }
 
 #[test]
