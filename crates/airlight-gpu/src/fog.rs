@@ -6,7 +6,9 @@ use crate::lighting::DirectLight;
 use airlight::atmosphere::DensityProfile;
 use airlight::fog::droplets::Droplets;
 use airlight::fog::visibility::{self, Contrast};
-use airlight::fog::{DirectionalLight, FogLighting, FogScattering, Ground, RgbFog, RgbLayer};
+use airlight::fog::{
+    DirectionalLight, FogLighting, FogScattering, Ground, RgbFog, RgbLayer, effective_top_m,
+};
 use airlight_shaders::twins::columns::{INFINITE_M, ray_segment};
 use airlight_shaders::twins::exponentials::OPAQUE;
 use airlight_shaders::twins::fog::{
@@ -72,20 +74,11 @@ impl Fog {
         Ok(RgbFog::new(layers, ground, lighting, scattering)?)
     }
 
-    /// Height above which 1 % of the fog's vertical optical depth lies, m: sun and sky light the fog as they do there.
+    /// Height of the fog's effective top, m: sun and sky light the fog as they do there.
     pub(crate) fn top_m(&self) -> f64 {
-        const ABOVE: f64 = 0.01;
-        let above = |height_m: f64| self.layer.density.column_above_m(height_m);
-        let whole = above(self.ground_height_m);
-        let (mut low, mut high) = (self.ground_height_m, self.ground_height_m + 1e5);
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            match above(middle) > ABOVE * whole {
-                true => low = middle,
-                false => high = middle,
-            }
-        }
-        high
+        effective_top_m(self.ground_height_m, |height_m| {
+            self.layer.density.column_above_m(height_m)
+        })
     }
 
     /// The fog in the light of sun and sky at its top.

@@ -12,7 +12,6 @@ use airlight::spectrum::RgbSpace;
 use airlight_shaders::twins::colour::rgb_from_spectrum;
 use airlight_shaders::{ColourFit, SingleScatteringTable, SkyTables, wavelength_grid};
 use glam::{Vec3, Vec4};
-use std::f32::consts::PI;
 use std::sync::Arc;
 
 /// A solved sky that fills the tables of frames. It needs no device, so that a thread or a worker of a web page can hold it. Cloning is
@@ -214,21 +213,10 @@ impl SourceTables {
     }
 }
 
-/// Irradiance of the ground below a fog relative to that without the fog, at the four wavelengths, of which those of red, green and blue are
+/// [`RgbFog::ground_share`] at the four wavelengths, of which those of red, green and blue are
 /// the fourth, the third and the first.
 fn ground_share(fog: &RgbFog) -> Vec4 {
-    let light = fog.lighting();
-    let sun = light.sun.map_or(Vec3::ZERO, |sun| {
-        Vec3::from_array(sun.irradiance) * sun.direction.y.max(0.0) as f32
-    });
-    let without = sun + PI * Vec3::from_array(light.ambient);
-    let [red, green, blue] = match fog.ground_irradiance() {
-        Some(through) => std::array::from_fn(|c| match without[c] > 0.0 {
-            true => through[c] / without[c],
-            false => 1.0,
-        }),
-        None => [1.0; 3],
-    };
+    let [red, green, blue] = fog.ground_share().unwrap_or([1.0; 3]);
     Vec4::new(blue, 0.5 * (blue + green), green, red)
 }
 

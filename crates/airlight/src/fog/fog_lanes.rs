@@ -3,7 +3,7 @@
 use super::closed_forms::{Lanes, OPAQUE, mean_attenuated_source};
 use super::error::FogError;
 use super::layer::{LayerLanes, MergedLayer, merge_layers};
-use super::lighting::{FogLighting, FogScattering, Ground};
+use super::lighting::{DirectionalLight, FogLighting, FogScattering, Ground};
 use super::multiple::{self, DEGREES, DirectionWeights, Field, KINDS};
 use super::ray_block::{PerRay, RAYS, RayBlock, in_lanes, store};
 use super::ray_cuts::height_breakpoints;
@@ -107,6 +107,21 @@ impl<const N: usize> FogLanes<N> {
     /// [`FogScattering::Multiple`].
     pub fn ground_irradiance(&self) -> Option<Spectrum<N>> {
         self.field.as_ref().map(|field| field.ground_irradiance)
+    }
+
+    /// Irradiance of the horizontal ground below the fog relative to that without the fog, with all orders of scattering: 1 where no light
+    /// falls; `None` without [`FogScattering::Multiple`].
+    pub fn ground_share(&self) -> Option<Spectrum<N>> {
+        let through = self.ground_irradiance()?;
+        let light = &self.lighting;
+        let level =
+            |sun: &DirectionalLight<Spectrum<N>>| sun.irradiance * sun.direction.y.max(0.0) as f32;
+        let sun = light.sun.as_ref().map_or(Spectrum::ZERO, level);
+        let without = sun + light.ambient * std::f32::consts::PI;
+        Some(Spectrum::from_fn(|lane| match without[lane] > 0.0 {
+            true => through[lane] / without[lane],
+            false => 1.0,
+        }))
     }
 
     /// Extinction coefficient at a height, 1/m.

@@ -110,6 +110,27 @@ impl Ground {
     }
 }
 
+/// Height of a fog's effective top, m, from its optical depth above a height (m), or a multiple of that: 1 % of the depth above the ground
+/// lies above it, and sun and sky light the fog as they do there. It is at most 100 km above the ground; the ground itself where no fog, or
+/// fog without an upper end, lies above that.
+pub fn effective_top_m(ground_height_m: f64, depth_above: impl Fn(f64) -> f64) -> f64 {
+    const ABOVE: f64 = 0.01;
+    const HIGHEST_M: f64 = 100e3;
+    let whole = depth_above(ground_height_m);
+    let (mut low, mut high) = (ground_height_m, ground_height_m + HIGHEST_M);
+    if whole <= 0.0 || !whole.is_finite() {
+        return low;
+    }
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        match depth_above(middle) > ABOVE * whole {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    high
+}
+
 impl<C> FogLighting<C> {
     /// Converts the values of all channels.
     pub(crate) fn map<D>(&self, values: impl Fn(&C) -> D) -> FogLighting<D> {
@@ -158,5 +179,19 @@ impl<C: ChannelValues> FogLighting<C> {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_effective_top_leaves_a_hundredth_of_the_depth_above() {
+        let top_m = effective_top_m(300.0, |height_m| 2.0 * (-height_m / 50.0).exp());
+        assert!((top_m - 300.0 - 50.0 * 100f64.ln()).abs() < 1e-6, "{top_m}");
+        for none in [0.0, f64::INFINITY] {
+            assert_eq!(effective_top_m(300.0, |_| none), 300.0);
+        }
     }
 }

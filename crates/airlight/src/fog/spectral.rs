@@ -390,6 +390,12 @@ impl RgbFog {
         self.lanes.ground_irradiance().map(|lanes| lanes.0)
     }
 
+    /// Irradiance of the horizontal ground below the fog relative to that without the fog, with all orders of scattering: 1 where no light
+    /// falls; `None` without [`FogScattering::Multiple`].
+    pub fn ground_share(&self) -> Option<[f32; 3]> {
+        self.lanes.ground_share().map(|lanes| lanes.0)
+    }
+
     /// The fog for whole rows of a picture, if it is the same in every direction: uniform, without a sun.
     pub fn even(&self) -> Option<EvenFog> {
         EvenFog::of(&self.lanes)

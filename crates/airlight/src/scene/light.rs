@@ -2,16 +2,13 @@
 
 use super::lane_channels::Converter;
 use crate::control::{Cancelled, Control};
-use crate::fog::{DirectionalLight, FogLanes, FogLighting, FogScattering, Ground, LayerLanes};
+use crate::fog::{
+    DirectionalLight, FogLanes, FogLighting, FogScattering, Ground, LayerLanes, effective_top_m,
+};
 use crate::sky::{TableChannels, View};
 use crate::spectrum::Spectrum;
 use glam::DVec3;
 use std::f64::consts::PI;
-
-/// Fraction of a fog's vertical optical depth above its effective top.
-const ABOVE_TOP: f64 = 0.01;
-/// Largest height of the effective top, m.
-const HIGHEST_M: f64 = 100e3;
 
 /// A view of a solved sky, and the rest of the sky's light.
 #[derive(Clone, Copy)]
@@ -102,7 +99,7 @@ impl TopLight {
     }
 }
 
-/// Height above which 1 % of the fog's vertical optical depth lies, m; that of the ground for fog without an upper end.
+/// [`effective_top_m`] of layers; the height of the ground for fog without an upper end.
 pub(super) fn top_m<const N: usize>(layers: &[LayerLanes<N>], ground: &Ground) -> f64 {
     let above = |height_m: f64| -> f64 {
         let column = |layer: &LayerLanes<N>| {
@@ -116,19 +113,7 @@ pub(super) fn top_m<const N: usize>(layers: &[LayerLanes<N>], ground: &Ground) -
         };
         layers.iter().map(column).sum()
     };
-    let whole = above(ground.height_m);
-    let (mut low, mut high) = (ground.height_m, ground.height_m + HIGHEST_M);
-    if whole <= 0.0 || !whole.is_finite() {
-        return low;
-    }
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        match above(middle) > ABOVE_TOP * whole {
-            true => low = middle,
-            false => high = middle,
-        }
-    }
-    high
+    effective_top_m(ground.height_m, above)
 }
 
 /// Irradiance of the ground below a fog relative to that without the fog.
@@ -140,17 +125,10 @@ pub(super) fn share_on_ground<const N: usize>(
     fog: &FogLanes<N>,
     layers: &[LayerLanes<N>],
 ) -> Spectrum<N> {
-    let (ground, light) = (fog.ground(), fog.lighting());
-    if let Some(through) = fog.ground_irradiance() {
-        let level =
-            |sun: &DirectionalLight<Spectrum<N>>| sun.irradiance * sun.direction.y.max(0.0) as f32;
-        let sun = light.sun.as_ref().map_or(Spectrum::ZERO, level);
-        let without = sun + light.ambient * std::f32::consts::PI;
-        return Spectrum::from_fn(|lane| match without[lane] > 0.0 {
-            true => through[lane] / without[lane],
-            false => 1.0,
-        });
+    if let Some(share) = fog.ground_share() {
+        return share;
     }
+    let (ground, light) = (fog.ground(), fog.lighting());
     Spectrum::from_fn(|lane| {
         let (mut depth, mut scattered, mut forward) = (0.0, 0.0, 0.0);
         for layer in layers {
