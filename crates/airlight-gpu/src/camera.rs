@@ -1,11 +1,16 @@
 //! [`Camera`] and [`Projection`].
 
 use airlight::axes;
-use glam::{DVec3, Mat4};
+use glam::{DVec2, DVec3, Mat4};
 use std::f32::consts::{FRAC_PI_2, PI};
+use std::f64::consts::TAU;
 
-/// Place of the factor of the sun's disc among the numbers.
-const DISC: usize = 18;
+/// Points around the edge of a disc.
+const EDGE_POINTS: usize = 16;
+/// Factor on the radius of a disc, whose edge is inside the polygon of its points then.
+const PADDING: f64 = 1.1;
+/// Pixels around a disc that its light may reach, and rounding.
+const MARGIN: f64 = 2.0;
 
 /// Where the pixels of a frame look.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,16 +72,55 @@ impl Camera {
             }
         };
         let mut numbers = matrix.to_cols_array().to_vec();
-        numbers.extend([self.exposure, far_depth, 1.0, f32::from_bits(kind)]);
+        numbers.extend([self.exposure, far_depth, f32::from_bits(kind), 0.0]);
         numbers.extend([across, up, largest, 0.0]);
         numbers
     }
 
-    /// The same for a frame without the sun's disc.
-    pub(crate) fn numbers_without_disc(&self) -> Vec<f32> {
-        let mut numbers = self.numbers();
-        numbers[DISC] = 0.0;
-        numbers
+    /// Column, row, width and height of the pixels that may see a disc around a direction, in a frame of a size; `None` if none do. In
+    /// projections other than perspective it is the whole frame.
+    pub(crate) fn rectangle(
+        &self,
+        size: [u32; 2],
+        towards: DVec3,
+        radius_rad: f64,
+    ) -> Option<[u32; 4]> {
+        let whole = Some([0, 0, size[0], size[1]]);
+        let Projection::Perspective {
+            world_from_clip, ..
+        } = self.projection
+        else {
+            return whole;
+        };
+        let clip_from_world = world_from_clip.as_dmat4().inverse();
+        let (across, up) = towards.any_orthonormal_pair();
+        let (sin, cos) = (PADDING * radius_rad).sin_cos();
+        let edge = (0..EDGE_POINTS).map(|k| {
+            let (y, x) = (TAU * k as f64 / EDGE_POINTS as f64).sin_cos();
+            let direction = towards * cos + (across * x + up * y) * sin;
+            clip_from_world * direction.extend(0.0)
+        });
+        let edge: Vec<_> = edge.collect();
+        if edge.iter().all(|clip| clip.w < -1e-6) {
+            return None;
+        }
+        if edge.iter().any(|clip| clip.w < 1e-6) {
+            return whole;
+        }
+        let [width, height] = size.map(f64::from);
+        let pixels = edge.iter().map(|clip| {
+            let place = DVec2::new(clip.x, -clip.y) / clip.w;
+            (0.5 + 0.5 * place) * DVec2::new(width, height)
+        });
+        let (least, most) = pixels.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), p| {
+            (a.min(p), b.max(p))
+        });
+        let end = DVec2::new(width, height);
+        let least = (least - MARGIN).floor().clamp(DVec2::ZERO, end);
+        let most = (most + MARGIN).ceil().clamp(DVec2::ZERO, end);
+        let extent = most - least;
+        (extent.min_element() > 0.0)
+            .then(|| [least.x, least.y, extent.x, extent.y].map(|side| side as u32))
     }
 }
 

@@ -5,8 +5,6 @@ struct Camera {
     world_from_clip: mat4x4<f32>,
     exposure: f32,
     far_depth: f32,
-    /// 1 with the sun's disc, 0 without.
-    disc: f32,
     /// 0: perspective, 1: fisheye, 2: equirectangular.
     projection: u32,
     /// Angles from the centre to the right and to the upper edge.

@@ -1,5 +1,4 @@
-// The passes of the fog, behind the functions of airlight-shaders and frame.wgsl: one multiplies the frame, sky included, by the
-// transmittance of the fog, one adds the light of the fog.
+// The fog of the passes of medium.wgsl, behind the functions of airlight-shaders and frame.wgsl.
 
 struct Fog {
     view: FogTableView,
@@ -14,7 +13,8 @@ struct Fog {
 @group(0) @binding(3) var streams: texture_3d<f32>;
 @group(0) @binding(4) var stream_phase: texture_2d<f32>;
 
-fn fog_to(seen: Pixel) -> PathOptics {
+/// Fog in front of what a pixel sees.
+fn path_to(seen: Pixel) -> PathOptics {
     let sine = seen.direction.y;
     var length_m = select(seen.distance_m, INFINITE_M, seen.distance_m < 0.0);
     if sine < 0.0 {
@@ -25,12 +25,10 @@ fn fog_to(seen: Pixel) -> PathOptics {
     return tabulated_fog(fog.view, diffuse, streams, stream_phase, linear_sampler, seen.direction, depth);
 }
 
-@fragment
-fn dim(in: Corner) -> @location(0) vec4<f32> {
-    return vec4<f32>(fog_to(pixel(in)).transmittance, 1.0);
+fn transmittance_to(seen: Pixel) -> vec3<f32> {
+    return path_to(seen).transmittance;
 }
 
-@fragment
-fn add(in: Corner) -> @location(0) vec4<f32> {
-    return vec4<f32>(fog_to(pixel(in)).path_radiance * camera.exposure, 0.0);
+fn light_to(seen: Pixel) -> vec3<f32> {
+    return path_to(seen).path_radiance;
 }

@@ -203,6 +203,14 @@ impl FrameTables {
 }
 
 impl SourceTables {
+    /// Direction to the disc of the source and its angular radius, rad; none below the horizon.
+    pub(crate) fn disc_above_horizon(&self) -> Option<(DVec3, f64)> {
+        let towards = self.sky.view.sun.as_dvec3().normalize();
+        let radius_rad = (1.0 - f64::from(self.disc.one_minus_cos)).acos();
+        let is_up = towards.y.asin() + radius_rad > f64::from(self.sky.view.horizon_rad);
+        is_up.then_some((towards, radius_rad))
+    }
+
     /// As [`FrameTables::rgb_radiance`], of this source.
     fn rgb_radiance(&self, direction: Vec3) -> Vec3 {
         let behind = self.sky.rgb_radiance(direction);

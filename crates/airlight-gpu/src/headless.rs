@@ -3,6 +3,7 @@
 
 use crate::camera::{Camera, Projection};
 use crate::pass::bytes;
+use crate::passes::SkyPasses;
 use crate::read::{ReadTextureError, read_rgb};
 use glam::{Mat4, Vec3};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
@@ -49,6 +50,8 @@ pub struct Headless {
     pub queue: wgpu::Queue,
     /// Name of the adapter.
     pub name: String,
+    /// Name and version of its driver.
+    pub driver: String,
     geometry: wgpu::RenderPipeline,
 }
 
@@ -148,11 +151,19 @@ impl Frame {
 }
 
 impl Headless {
-    /// The first Vulkan device.
+    /// The first Vulkan device, with the [`SkyPasses::OPTIONAL_FEATURES`] if it has them.
     ///
     /// # Errors
     /// [`HeadlessError::NoDevice`] where there is none.
     pub fn new() -> Result<Self, HeadlessError> {
+        Self::with_features(SkyPasses::OPTIONAL_FEATURES)
+    }
+
+    /// The first Vulkan device, with those of some features that it has.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_features(features: wgpu::Features) -> Result<Self, HeadlessError> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             backends: wgpu::Backends::VULKAN,
             ..wgpu::InstanceDescriptor::new_without_display_handle()
@@ -160,15 +171,18 @@ impl Headless {
         let adapter =
             pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))
                 .map_err(|error| HeadlessError::NoDevice(error.to_string()))?;
-        let name = adapter.get_info().name;
-        let (device, queue) =
-            pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))
-                .map_err(|error| HeadlessError::NoDevice(error.to_string()))?;
+        let info = adapter.get_info();
+        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+            required_features: features & adapter.features(),
+            ..Default::default()
+        }))
+        .map_err(|error| HeadlessError::NoDevice(error.to_string()))?;
         Ok(Self {
             geometry: geometry_pipeline(&device),
             device,
             queue,
-            name,
+            driver: format!("{} {}", info.driver, info.driver_info),
+            name: info.name,
         })
     }
 

@@ -24,6 +24,7 @@ pub mod headless;
 mod lighting;
 mod lights;
 mod pass;
+mod pass_timers;
 mod passes;
 mod read;
 mod renderer;
@@ -41,6 +42,7 @@ pub use fog::{Fog, FogFrame};
 pub use frame_tables::{FrameTables, SkySolver, SourceTables};
 pub use lighting::{DirectLight, Lighting};
 pub use lights::MOST_LIGHTS;
+pub use pass_timers::PassTimers;
 pub use passes::SkyPasses;
 pub use read::{PendingPixels, ReadTextureError};
 #[cfg(not(target_arch = "wasm32"))]

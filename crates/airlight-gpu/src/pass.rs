@@ -142,45 +142,69 @@ pub fn cover(
     pass.draw(0..3, 0..1);
 }
 
-/// The two pipelines of a medium.
+/// The passes of a shader's medium.
+const MEDIUM: &str = include_str!("medium.wgsl");
+/// Features of a device that dims and adds light at once.
+pub const AT_ONCE_FEATURES: wgpu::Features = wgpu::Features::DUAL_SOURCE_BLENDING;
+/// The pass that does so.
+const AT_ONCE: &str = include_str!("medium_at_once.wgsl");
+
+/// The pipelines of a medium.
 #[derive(Debug)]
 pub struct Pass {
-    dim: wgpu::RenderPipeline,
+    /// What dims the frame and adds light: one pipeline where the device blends with two colours, otherwise two.
+    dim_and_add: Vec<wgpu::RenderPipeline>,
     add: wgpu::RenderPipeline,
 }
 
 impl Pass {
-    /// The pipelines of a shader with [`CORNER`] and the entry points `dim` and `add`, for targets of a format.
+    /// The pipelines of a shader with [`CORNER`] and the functions of a medium, for targets of a format.
     pub fn new(
         device: &wgpu::Device,
         groups: [&wgpu::BindGroupLayout; 2],
         shader: &str,
         format: wgpu::TextureFormat,
     ) -> Self {
-        let (layout, shader) = parts(device, &groups, shader);
-        Self {
-            dim: blending(device, &layout, &shader, "dim", format),
-            add: blending(device, &layout, &shader, "add", format),
+        let shader = medium_shader(shader);
+        let (layout, module) = parts(device, &groups, &shader);
+        let add = blending(device, &layout, &module, "add", format);
+        let dim_and_add = match device.features().contains(AT_ONCE_FEATURES) {
+            true => {
+                let (layout, module) = parts(device, &groups, &at_once_shader(&shader));
+                vec![blending(device, &layout, &module, "dim_and_add", format)]
+            }
+            false => vec![
+                blending(device, &layout, &module, "dim", format),
+                add.clone(),
+            ],
+        };
+        Self { dim_and_add, add }
+    }
+
+    /// Draws over the frame with the tables of the medium; the second group is set.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, tables: &wgpu::BindGroup) {
+        for pipeline in &self.dim_and_add {
+            draw(pass, pipeline, tables);
         }
     }
 
-    /// Draws over the frame with the tables of the medium, and adds the light of a second source; the second group is set.
-    pub fn draw(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        tables: &wgpu::BindGroup,
-        second: Option<&wgpu::BindGroup>,
-    ) {
-        for pipeline in [&self.dim, &self.add] {
-            draw(pass, pipeline, tables);
-        }
-        if let Some(tables) = second {
-            draw(pass, &self.add, tables);
-        }
+    /// Adds the light of a second source, in a medium that has been drawn.
+    pub fn add(&self, pass: &mut wgpu::RenderPass<'_>, tables: &wgpu::BindGroup) {
+        draw(pass, &self.add, tables);
     }
 }
 
-/// The pipeline of a shader with [`CORNER`] and one entry point, `add` or `shade`, for targets of a format.
+/// A shader with the functions of a medium, and its passes.
+pub fn medium_shader(shader: &str) -> String {
+    [shader, MEDIUM].concat()
+}
+
+/// A [`medium_shader`] that can do both at once.
+pub fn at_once_shader(shader: &str) -> String {
+    ["enable dual_source_blending;\n", shader, AT_ONCE].concat()
+}
+
+/// The pipeline of a shader with [`CORNER`] and one entry point, `add`, `disc` or `shade`, for targets of a format.
 pub fn single(
     device: &wgpu::Device,
     groups: &[&wgpu::BindGroupLayout],
@@ -221,7 +245,8 @@ fn parts(
     (layout, shader)
 }
 
-/// A pipeline whose entry point `dim` multiplies the colours of the target, whose `add` adds to them, and whose `shade` subtracts from them.
+/// A pipeline whose entry point `dim` multiplies the colours of the target, whose `add` and `disc` add to them, whose `dim_and_add` does
+/// both, and whose `shade` subtracts from them.
 fn blending(
     device: &wgpu::Device,
     layout: &wgpu::PipelineLayout,
@@ -237,6 +262,7 @@ fn blending(
     let (zero, one) = (wgpu::BlendFactor::Zero, wgpu::BlendFactor::One);
     let color = match entry {
         "dim" => component(zero, wgpu::BlendFactor::Src),
+        "dim_and_add" => component(one, wgpu::BlendFactor::Src1),
         "shade" => wgpu::BlendComponent {
             operation: wgpu::BlendOperation::ReverseSubtract,
             ..component(one, one)

@@ -9,11 +9,13 @@ use crate::gpu_tables::FLAT;
 use crate::lighting::Lighting;
 use crate::lights;
 use crate::pass::{
-    CORNER, Pass, UNIFORM, bind_group, draw, group_layout, single, texture, uniform,
+    AT_ONCE_FEATURES, CORNER, Pass, UNIFORM, bind_group, draw, group_layout, single, texture,
+    uniform,
 };
 use crate::shadows::{Caster, SunShadows};
 use crate::sky;
 use airlight::fog::lights::Light;
+use airlight::glam::DVec3;
 use airlight_shaders::twins::lights::{ExponentialFog, LocalLight};
 use airlight_shaders::{Part, source};
 use std::sync::OnceLock;
@@ -28,6 +30,7 @@ pub struct SkyPasses {
     light_layout: wgpu::BindGroupLayout,
     frame_layout: wgpu::BindGroupLayout,
     sky_pass: Pass,
+    disc_pass: wgpu::RenderPipeline,
     fog_pass: Pass,
     light_pass: wgpu::RenderPipeline,
     /// Of shadows in air and in fog, once there are any.
@@ -51,6 +54,8 @@ struct Drawn {
 #[derive(Debug)]
 struct DrawnSource {
     sky: wgpu::BindGroup,
+    /// Direction to the disc and its angular radius, rad; none below the horizon.
+    disc: Option<(DVec3, f64)>,
     /// What the air scatters once.
     sky_once: Option<wgpu::BindGroup>,
     /// All light of the fog, and what it scatters once.
@@ -66,6 +71,10 @@ struct DrawnFog {
 }
 
 impl SkyPasses {
+    /// Features of a device with which a frame takes half as many passes: blending with two colours. To request where the adapter has
+    /// them.
+    pub const OPTIONAL_FEATURES: wgpu::Features = AT_ONCE_FEATURES;
+
     /// Makes the pipelines for targets of a format: linear, and blendable, such as `Rgba16Float`.
     ///
     /// # Errors
@@ -90,6 +99,12 @@ impl SkyPasses {
         Ok(Self {
             sky_pass: pass(&sky_layout, &sky_shader()),
             fog_pass: pass(&fog_layout, &fog_shader()),
+            disc_pass: single(
+                device,
+                &[&sky_layout, &frame_layout],
+                (&sky_shader(), "disc"),
+                target_format,
+            ),
             light_pass: single(
                 device,
                 &[&light_layout, &frame_layout],
@@ -131,6 +146,7 @@ impl SkyPasses {
         let (sky, sky_once) = sky::upload(device, &self.sky_layout, source);
         DrawnSource {
             sky,
+            disc: source.disc_above_horizon(),
             sky_once,
             fog: fog.map(|fog| fog.upload(device, &self.fog_layout)),
         }
@@ -198,6 +214,7 @@ impl SkyPasses {
         if let Some(drawn) = &self.drawn {
             let passes = Passes {
                 sky: &self.sky_pass,
+                disc: Some(&self.disc_pass).filter(|_| self.has_discs),
                 fog: &self.fog_pass,
                 lights: Some(&self.light_pass),
                 shadows: shadows.map(|shadows| (self.shadow_passes(shadows.caster()), shadows)),
@@ -208,10 +225,7 @@ impl SkyPasses {
                 encoder,
                 (target, wgpu::LoadOp::Load),
                 depth,
-                &match self.has_discs {
-                    true => camera.numbers(),
-                    false => camera.numbers_without_disc(),
-                },
+                camera,
             );
         }
     }
@@ -267,10 +281,10 @@ impl SkyPasses {
                 },
                 exposure,
             };
-            let numbers = camera.numbers_without_disc();
             let [sky, fog] = map.passes();
             let passes = Passes {
                 sky,
+                disc: None,
                 fog,
                 lights: None,
                 shadows: None,
@@ -281,7 +295,7 @@ impl SkyPasses {
                 encoder,
                 (&target, black),
                 map.depth(),
-                &numbers,
+                &camera,
             );
         }
         map.filter(encoder);
@@ -295,16 +309,16 @@ impl SkyPasses {
         encoder: &mut wgpu::CommandEncoder,
         (target, load): (&wgpu::TextureView, wgpu::LoadOp<wgpu::Color>),
         depth: &wgpu::TextureView,
-        camera: &[f32],
+        camera: &Camera,
     ) {
         // A buffer for each frame, as an encoder may record several.
-        let camera = uniform(&self.device, "airlight camera", camera);
+        let numbers = uniform(&self.device, "airlight camera", &camera.numbers());
         let frame = bind_group(
             &self.device,
             &self.frame_layout,
             "airlight frame",
             &[
-                camera.as_entire_binding(),
+                numbers.as_entire_binding(),
                 wgpu::BindingResource::TextureView(depth),
             ],
         );
@@ -333,12 +347,19 @@ impl SkyPasses {
                     draw(pass, &pipelines[medium], once);
                 }
             };
-        let more = second.map(|source| &source.sky);
-        passes.sky.draw(&mut pass, &first.sky, more);
+        passes.sky.draw(&mut pass, &first.sky);
+        if let Some(second) = second {
+            passes.sky.add(&mut pass, &second.sky);
+        }
+        for source in [Some(first), second].into_iter().flatten() {
+            passes.draw_disc(&mut pass, source, camera, target.texture());
+        }
         shade(&mut pass, 0, first.sky_once.as_ref());
         if let Some([fog, once]) = &first.fog {
-            let more = second.and_then(|source| source.fog.as_ref());
-            passes.fog.draw(&mut pass, fog, more.map(|[fog, _]| fog));
+            passes.fog.draw(&mut pass, fog);
+            if let Some([fog, _]) = second.and_then(|source| source.fog.as_ref()) {
+                passes.fog.add(&mut pass, fog);
+            }
             shade(&mut pass, 1, Some(once));
         }
         let lights = drawn.fog.as_ref().and_then(|fog| fog.lights.as_ref());
@@ -351,10 +372,37 @@ impl SkyPasses {
 /// Pipelines of a frame.
 struct Passes<'a> {
     sky: &'a Pass,
+    disc: Option<&'a wgpu::RenderPipeline>,
     fog: &'a Pass,
     lights: Option<&'a wgpu::RenderPipeline>,
     /// Of shadows in air and in fog.
     shadows: Option<(&'a [wgpu::RenderPipeline; 2], &'a SunShadows)>,
+}
+
+impl Passes<'_> {
+    /// Adds the disc of a source to the pixels that may see it.
+    fn draw_disc(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        source: &DrawnSource,
+        camera: &Camera,
+        target: &wgpu::Texture,
+    ) {
+        let (Some(pipeline), Some((towards, radius_rad))) = (self.disc, source.disc) else {
+            return;
+        };
+        // The level of a view is unknown.
+        if target.mip_level_count() > 1 {
+            draw(pass, pipeline, &source.sky);
+            return;
+        }
+        let (width, height) = (target.width(), target.height());
+        if let Some([x, y, across, down]) = camera.rectangle([width, height], towards, radius_rad) {
+            pass.set_scissor_rect(x, y, across, down);
+            draw(pass, pipeline, &source.sky);
+            pass.set_scissor_rect(0, 0, width, height);
+        }
+    }
 }
 
 /// What passes know of their pixels.
@@ -386,32 +434,40 @@ fn frame_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pass::{at_once_shader, medium_shader};
     use airlight_shaders::{Cost, costs};
 
-    /// What a pixel costs at most in the passes `dim` and `add`: as the README states it.
+    /// What a pixel costs at most in each pass: as the README states it.
     #[test]
     fn pixels_cost_what_the_readme_states() {
         let readme = include_str!("../README.md");
+        let of = |shader: &str, entry: &str| -> Cost {
+            let all = costs(shader).unwrap();
+            let named = all.into_iter().find(|(name, _)| name == entry);
+            named.expect("an entry point").1
+        };
         for (shader, name) in [(sky_shader(), "sky"), (fog_shader(), "fog")] {
-            let all = costs(&shader).unwrap();
-            let of = |entry: &str| -> Cost {
-                let named = all.iter().find(|(name, _)| name == entry);
-                named.expect("an entry point").1
-            };
-            let row = format!("| {name} | {} | {} |", of("dim"), of("add"));
+            let shader = medium_shader(&shader);
+            let at_once = of(&at_once_shader(&shader), "dim_and_add");
+            let [dim, add] = ["dim", "add"].map(|entry| of(&shader, entry));
+            let row = format!("| {name} | {at_once} | {dim} | {add} |");
             assert!(readme.contains(&row), "{row}");
         }
-        let all = costs(&light_shader()).unwrap();
-        let (_, add) = all.iter().find(|(name, _)| name == "add").unwrap();
-        let row = format!("| lights | none | {add} |");
-        assert!(readme.contains(&row), "{row}");
-        for (shader, name) in [
-            (Caster::Ground.in_air(&sky_shader()), "shadows in air"),
-            (Caster::Ground.in_fog(&fog_shader()), "shadows in fog"),
+        for (shader, entry, name) in [
+            (sky_shader(), "disc", "disc"),
+            (light_shader(), "add", "lights"),
+            (
+                Caster::Ground.in_air(&sky_shader()),
+                "shade",
+                "shadows in air",
+            ),
+            (
+                Caster::Ground.in_fog(&fog_shader()),
+                "shade",
+                "shadows in fog",
+            ),
         ] {
-            let all = costs(&shader).unwrap();
-            let (_, shade) = all.iter().find(|(name, _)| name == "shade").unwrap();
-            let row = format!("| {name} | none | {shade} |");
+            let row = format!("| {name} | | | {} |", of(&shader, entry));
             assert!(readme.contains(&row), "{row}");
         }
     }

@@ -57,7 +57,7 @@ fn once_to(direction: vec3<f32>, distance_m: f32) -> vec3<f32> {
     pub fn in_fog(self, fog_shader: &str) -> String {
         const ONCE: &str = "
 fn once_to(direction: vec3<f32>, distance_m: f32) -> vec3<f32> {
-    return fog_to(Pixel(direction, distance_m)).path_radiance;
+    return path_to(Pixel(direction, distance_m)).path_radiance;
 }
 ";
         [fog_shader, ONCE, self.text(), SHADOW].concat()

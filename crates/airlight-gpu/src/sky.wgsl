@@ -1,5 +1,5 @@
-// The passes of the sky, behind the functions of airlight-shaders and frame.wgsl: one multiplies the frame by the transmittance of the air, one
-// adds the light of air, sky and sun, or of the moon in its place.
+// The passes of the sky, before those of medium.wgsl and behind the functions of airlight-shaders and frame.wgsl: air and sky, and the disc of
+// the sun, or of the moon in its place.
 
 struct Sky {
     view: SkyView,
@@ -36,11 +36,23 @@ const DISC_SAMPLES: u32 = 8u;
 /// Longer than any way through the air.
 const BEYOND_AIR_M: f32 = 1e9;
 
+/// Air in front of what a pixel sees.
 fn air_to(seen: Pixel) -> SpectralPath {
-    let distance_m = select(seen.distance_m, BEYOND_AIR_M, seen.distance_m < 0.0);
     return aerial_perspective(
-        sky.view, sky.scales, aerial_smooth, aerial_haze, extinction, phase, linear_sampler, seen.direction, distance_m,
+        sky.view, sky.scales, aerial_smooth, aerial_haze, extinction, phase, linear_sampler, seen.direction, seen.distance_m,
     );
+}
+
+/// Transmittance to the point that a pixel sees, or to space.
+fn air_transmittance(seen: Pixel) -> vec4<f32> {
+    let distance_m = select(seen.distance_m, BEYOND_AIR_M, seen.distance_m < 0.0);
+    return aerial_transmittance(sky.view, extinction, linear_sampler, seen.direction, distance_m);
+}
+
+/// Radiance of the sky, or of the ground of the planet.
+fn radiance_without_geometry(direction: vec3<f32>) -> vec3<f32> {
+    let radiance = sky_radiance(sky.view, sky.scales, sky_smooth, sky_haze, phase, linear_sampler, direction);
+    return rgb_from_spectrum(sky.radiance_weights, radiance);
 }
 
 fn is_ground(seen: Pixel) -> bool {
@@ -67,7 +79,7 @@ fn sun_disc(in: Corner, seen: Pixel, pixel_size: vec2<f32>) -> vec3<f32> {
     let reach = distance(direction_at(in.clip + 0.5 * pixel_size), seen.direction);
     let radius = sqrt(2.0 * sky.disc.one_minus_cos);
     let away = sqrt(2.0 * one_minus_cos_between(seen.direction, sky.view.sun));
-    if camera.disc == 0.0 || away > radius + reach {
+    if away > radius + reach {
         return vec3<f32>(0.0);
     }
     var samples = DISC_SAMPLES;
@@ -88,30 +100,41 @@ fn sun_disc(in: Corner, seen: Pixel, pixel_size: vec2<f32>) -> vec3<f32> {
         return vec3<f32>(0.0);
     }
     let mean = outside / f32(samples * samples);
-    let transmittance = air_to(Pixel(normalize(towards), -1.0)).transmittance;
+    let transmittance = air_transmittance(Pixel(normalize(towards), -1.0));
     return rgb_from_spectrum(sky.disc_weights, mean * transmittance);
 }
 
-@fragment
-fn dim(in: Corner) -> @location(0) vec4<f32> {
-    let seen = pixel(in);
+/// What the light behind a pixel is multiplied by: the ground of the planet hides it.
+fn transmittance_to(seen: Pixel) -> vec3<f32> {
     if is_ground(seen) {
-        return vec4<f32>(0.0, 0.0, 0.0, 1.0);
+        return vec3<f32>(0.0);
     }
-    return vec4<f32>(rgb_from_spectrum(sky.transmittance_weights, air_to(seen).transmittance), 1.0);
+    return rgb_from_spectrum(sky.transmittance_weights, air_transmittance(seen));
+}
+
+/// Light of the air in front of what a pixel sees, or of sky and ground.
+fn light_to(seen: Pixel) -> vec3<f32> {
+    if seen.distance_m < 0.0 {
+        return radiance_without_geometry(seen.direction);
+    }
+    return rgb_from_spectrum(sky.radiance_weights, air_to(seen).path_radiance);
+}
+
+/// Both.
+fn path_to(seen: Pixel) -> PathOptics {
+    if seen.distance_m < 0.0 {
+        return PathOptics(transmittance_to(seen), radiance_without_geometry(seen.direction));
+    }
+    return rgb_path(sky.radiance_weights, sky.transmittance_weights, air_to(seen));
 }
 
 @fragment
-fn add(in: Corner) -> @location(0) vec4<f32> {
+fn disc(in: Corner) -> @location(0) vec4<f32> {
     let seen = pixel(in);
     // Not from the size of the depth texture, which is wrong in WebGL.
     let pixel_size = vec2<f32>(dpdx(in.clip.x), dpdy(in.clip.y));
-    var light = vec3<f32>(0.0);
-    if seen.distance_m < 0.0 {
-        let radiance = sky_radiance(sky.view, sky.scales, sky_smooth, sky_haze, phase, linear_sampler, seen.direction);
-        light = sun_disc(in, seen, pixel_size) + rgb_from_spectrum(sky.radiance_weights, radiance);
-    } else {
-        light = rgb_from_spectrum(sky.radiance_weights, air_to(seen).path_radiance);
+    if seen.distance_m >= 0.0 {
+        discard;
     }
-    return vec4<f32>(light * camera.exposure, 0.0);
+    return vec4<f32>(sun_disc(in, seen, pixel_size) * camera.exposure, 0.0);
 }

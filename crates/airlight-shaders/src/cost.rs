@@ -30,7 +30,7 @@ pub struct CostError(pub String);
 pub fn costs(wgsl: &str) -> Result<Vec<(String, Cost)>, CostError> {
     let module = naga::front::wgsl::parse_str(wgsl)
         .map_err(|error| CostError(error.emit_to_string(wgsl)))?;
-    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+    let info = Validator::new(ValidationFlags::all(), Capabilities::DUAL_SOURCE_BLENDING)
         .validate(&module)
         .map_err(|error| CostError(error.emit_to_string(wgsl)))?;
     let reader = Reader {

@@ -1,12 +1,12 @@
 //! [`Picture`]: the light of a frame on the graphics device, and what of it is shown.
 
 use crate::compute::Light;
-use crate::timers::{PassTimers, PassTimes};
+use crate::timers::{PASSES, PassTimes};
 use airlight::fog::lights::Light as FogLight;
 use airlight::scene::OutputSpec;
 use airlight_gpu::{
-    Camera, HeightField, SkyPasses, SkyRendererError, SunShadows, TerrainPass, TerrainView,
-    ToneCurve, TonePass, ToneSettings,
+    Camera, HeightField, PassTimers, SkyPasses, SkyRendererError, SunShadows, TerrainPass,
+    TerrainView, ToneCurve, TonePass, ToneSettings,
 };
 use airlight_image::tone::{self, ToneMapper, WhiteBalance};
 use airlight_image::{Frame, Projection};
@@ -217,14 +217,14 @@ impl Picture {
 
     /// Times the passes of pictures from now on, or no longer. False if the device has no timers.
     pub fn set_timed(&mut self, is_timed: bool) -> bool {
-        let timers = || PassTimers::new(&self.device, &self.queue);
+        let timers = || PassTimers::new(&self.device, &self.queue, PASSES);
         self.timers = is_timed.then(timers).flatten();
         self.timers.is_some() == is_timed
     }
 
     /// Times of the passes of the last picture that was timed, once they are there.
     pub fn take_times(&mut self) -> Option<PassTimes> {
-        self.timers.as_mut()?.take(&self.device)
+        PassTimes::take(self.timers.as_mut()?, &self.device)
     }
 
     /// Whether times are on their way from the device.

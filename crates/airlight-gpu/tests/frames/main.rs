@@ -17,7 +17,7 @@ use airlight::sky::{LightSource, Sky, SkySettings, SunCoverage, TableChannels, V
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use airlight::transfer::medium_evaluations;
 use airlight_gpu::headless::{FORMAT, Frame, Geometry, Headless};
-use airlight_gpu::{Fog, SkyRenderer, SkyRendererError, SkyRendererSettings, SkySolver};
+use airlight_gpu::{Fog, SkyPasses, SkyRenderer, SkyRendererError, SkyRendererSettings, SkySolver};
 use airlight_shaders::{ColourFit, SkyTables};
 use cube::sample_cube;
 use glam::{DVec3, Vec3};
@@ -134,6 +134,34 @@ fn moved_suns_evaluate_the_medium_in_few_places_and_turned_cameras_in_none() {
             assert!((1000..60_000).contains(&shadows), "{shadows}");
         }
     });
+}
+
+/// Frames of devices that blend with two colours, and of those that take two passes: half floats are rounded once more.
+#[test]
+fn frames_are_the_same_in_one_pass_and_in_two() {
+    let devices = [SkyPasses::OPTIONAL_FEATURES, wgpu::Features::empty()];
+    let [one, two] = devices.map(|features| {
+        let gpu = Headless::with_features(features).unwrap();
+        let mut renderer = renderer(&gpu, Preset::Hazy, 30.0, 2.0);
+        renderer.set_fog(Some(valley_fog())).unwrap();
+        let sun = axes::direction(140.0, 30.0);
+        renderer.update(2.0, sun).unwrap();
+        let frame = Frame::towards(sun.as_vec3(), SIDE);
+        let walls = Geometry {
+            colour: [0.2, 0.5, 0.9],
+            distance_m: &|x, y| match (x + y) % 3 {
+                0 => f32::INFINITY,
+                _ => 20.0 + 100.0 * ((x * y) % 61) as f32,
+            },
+        };
+        draw(&gpu, &mut renderer, &frame, 1e-4, Some(&walls))
+    });
+    let brightest = two.iter().flatten().fold(0.0f32, |a, b| a.max(*b));
+    let pairs = one.as_flattened().iter().zip(two.as_flattened());
+    let worst = pairs.fold(0.0f32, |worst, (a, b)| worst.max((a / b - 1.0).abs()));
+    println!("brightest {brightest}, worst relative difference {worst:.5}");
+    // The disc of the sun is in the frame.
+    assert!(brightest > 100.0 && worst < 0.003, "{brightest} {worst}");
 }
 
 #[test]

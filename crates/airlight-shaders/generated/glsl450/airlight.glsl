@@ -1121,9 +1121,9 @@ LightRay light_ray(LocalLight light_8, vec3 eye_2, vec3 direction_2, float lengt
     vec3 to_light_1 = (light_8.position - eye_2);
     float nearest_m_2 = length(cross(to_light_1, direction_2));
     if ((light_8.kind == LIGHT_SPHERE)) {
-        float distance_m_2 = length(to_light_1);
+        float distance_m_3 = length(to_light_1);
         float inside = ((light_8.radius_m - nearest_m_2) * (light_8.radius_m + nearest_m_2));
-        if ((distance_m_2 <= light_8.radius_m)) {
+        if ((distance_m_3 <= light_8.radius_m)) {
             geometry_4.length_m = 0.0;
         } else {
             float _e26 = geometry_4.start_m;
@@ -1135,7 +1135,7 @@ LightRay light_ray(LocalLight light_8, vec3 eye_2, vec3 direction_2, float lengt
             bool _e34 = local_12;
             if (_e34) {
                 float _e42 = geometry_4.start_m;
-                float hit_m = (((distance_m_2 - light_8.radius_m) * (distance_m_2 + light_8.radius_m)) / (sqrt(inside) - _e42));
+                float hit_m = (((distance_m_3 - light_8.radius_m) * (distance_m_3 + light_8.radius_m)) / (sqrt(inside) - _e42));
                 geometry_4.length_m = min(length_m_10, hit_m);
             }
         }
@@ -1856,6 +1856,31 @@ SpectralPath aerial_perspective(SkyView view_6, SkyScales scales_1, sampler3D sm
     return SpectralPath((vec4(1.0) - opacity_2), ((smooth_light_1 + (haze_1 * _e52)) * opacity_2));
 }
 
+// Transmittance of the air between the eye and a point at a distance along a direction, at four wavelengths: that of `aerial_perspective` alone.
+// Cost: 4 exp, 1 read.
+vec4 aerial_transmittance(SkyView view_7, sampler2D extinction_table_1, vec3 direction_10, float distance_m_2) {
+    bool local_18 = false;
+    float _e5 = elevation_of(direction_10);
+    bool is_below_4 = (_e5 < view_7.horizon_rad);
+    vec2 _e9 = air_span_m(view_7, direction_10.y, is_below_4);
+    float length_m_16 = (min(distance_m_2, _e9.y) - _e9.x);
+    if (!((length_m_16 <= 0.0))) {
+        local_18 = (_e5 > view_7.highest_rad);
+    } else {
+        local_18 = true;
+    }
+    bool _e22 = local_18;
+    if (_e22) {
+        return vec4(1.0);
+    }
+    float _e32 = place_from_part(clamp((length_m_16 / (_e9.y - _e9.x)), 0.0, 1.0));
+    float _e35 = row_coordinate(view_7, _e5, is_below_4, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    float _e37 = texel_coordinate(_e32, AERIAL_DISTANCES);
+    vec2 uv = vec2(_e37, _e35);
+    vec4 _e40 = textureLod(extinction_table_1, vec2(uv), 0.0);
+    return exp((_e40 * (length_m_16 * -0.001)));
+}
+
 // Transmittance and path radiance in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
 // Cost: no exp.
 PathOptics rgb_path(RgbWeights radiance_3, RgbWeights transmittance, SpectralPath path_1) {
@@ -1873,11 +1898,11 @@ float fog_row_place(float per_sine, float sine, float elevation_rad_2) {
 
 // Texture coordinate of the rows of a direction: falling rays come first.
 // Cost: 2 exp.
-float fog_row_coordinate(FogTableView view_7, vec3 direction_10) {
-    bool is_above = (direction_10.y > 0.0);
-    float per_sine_1 = (is_above ? view_7.above_per_sine : view_7.below_per_sine);
-    float _e10 = elevation_of(direction_10);
-    float _e12 = fog_row_place(per_sine_1, abs(direction_10.y), abs(_e10));
+float fog_row_coordinate(FogTableView view_8, vec3 direction_11) {
+    bool is_above = (direction_11.y > 0.0);
+    float per_sine_1 = (is_above ? view_8.above_per_sine : view_8.below_per_sine);
+    float _e10 = elevation_of(direction_11);
+    float _e12 = fog_row_place(per_sine_1, abs(direction_11.y), abs(_e10));
     return ((((is_above ? FOG_ROWS : 0.0) + 0.5) + (_e12 * 63.0)) / 128.0);
 }
 
@@ -1890,8 +1915,8 @@ vec3 fog_opacity(vec3 depth_2) {
 
 // Place of a distance, 0 to 1, from the opacity and the transmittance up to there, relative to those of the whole ray to the ground or through the fog.
 // Cost: 6 exp.
-float fog_distance_place(FogTableView view_8, float sin_elevation_10, vec3 opacity, vec3 transmittance_1) {
-    vec3 vertical = ((sin_elevation_10 > 0.0) ? view_8.depth_above : view_8.depth_below);
+float fog_distance_place(FogTableView view_9, float sin_elevation_10, vec3 opacity, vec3 transmittance_1) {
+    vec3 vertical = ((sin_elevation_10 > 0.0) ? view_9.depth_above : view_9.depth_below);
     vec3 depth_6 = min((vertical / vec3(max(abs(sin_elevation_10), 1e-10))), vec3(1e25));
     vec3 _e17 = fog_opacity(depth_6);
     float whole = dot(_e17, vec3(1.0));
@@ -1912,17 +1937,17 @@ vec3 fog_stream_light(sampler3D stream_table, sampler2D stream_phase_table, vec3
 
 // Fog between the eye and a point, by the optical depth on the way: extinction times `exponential_column_m`, or the column of another profile. Rays end at the ground.
 // Cost: 23 exp, 7 reads.
-PathOptics tabulated_fog(FogTableView view_9, sampler3D diffuse_table, sampler3D stream_table_1, sampler2D stream_phase_table_1, vec3 direction_11, vec3 optical_depth_2) {
+PathOptics tabulated_fog(FogTableView view_10, sampler3D diffuse_table, sampler3D stream_table_1, sampler2D stream_phase_table_1, vec3 direction_12, vec3 optical_depth_2) {
     vec3 _e7 = fog_opacity(optical_depth_2);
     vec3 transmittance_3 = exp(-(optical_depth_2));
-    float _e11 = azimuth_place(direction_11, view_9.sun);
+    float _e11 = azimuth_place(direction_12, view_10.sun);
     float _e13 = texel_coordinate(_e11, FOG_AZIMUTHS);
-    float _e14 = fog_row_coordinate(view_9, direction_11);
-    float _e16 = fog_distance_place(view_9, direction_11.y, _e7, transmittance_3);
+    float _e14 = fog_row_coordinate(view_10, direction_12);
+    float _e16 = fog_distance_place(view_10, direction_12.y, _e7, transmittance_3);
     float _e18 = texel_coordinate(_e16, FOG_DISTANCES);
     vec4 _e21 = textureLod(diffuse_table, vec3(vec3(_e13, _e14, _e18)), 0.0);
     vec3 diffuse = _e21.xyz;
-    float _e24 = one_minus_cos_between(direction_11, view_9.sun);
+    float _e24 = one_minus_cos_between(direction_12, view_10.sun);
     float _e25 = phase_place(_e24);
     float _e27 = texel_coordinate(_e25, PHASE_ANGLES);
     vec3 place_9 = vec3(_e18, _e14, _e27);
@@ -1930,7 +1955,7 @@ PathOptics tabulated_fog(FogTableView view_9, sampler3D diffuse_table, sampler3D
     vec3 _e32 = fog_stream_light(stream_table_1, stream_phase_table_1, place_9, 1.0);
     vec3 _e35 = fog_stream_light(stream_table_1, stream_phase_table_1, place_9, 2.0);
     vec3 sunlit_2 = ((_e30 + _e32) + _e35);
-    vec3 source_1 = ((view_9.diffuse_scale * diffuse) + (view_9.sunlit_scale * max(sunlit_2, vec3(0.0))));
+    vec3 source_1 = ((view_10.diffuse_scale * diffuse) + (view_10.sunlit_scale * max(sunlit_2, vec3(0.0))));
     return PathOptics(transmittance_3, (_e7 * source_1));
 }
 
@@ -1995,8 +2020,8 @@ vec3 article_transmittance(vec3 from_m_8, vec3 to_m_6) {
 
 // Distance to a sphere around the centre from a point inside, m.
 // Cost: no exp.
-float article_distance_m(vec3 origin, vec3 direction_12, float radius_m_3) {
-    float b_4 = dot(origin, direction_12);
+float article_distance_m(vec3 origin, vec3 direction_13, float radius_m_3) {
+    float b_4 = dot(origin, direction_13);
     return (-(b_4) + sqrt(((b_4 * b_4) - (dot(origin, origin) - (radius_m_3 * radius_m_3)))));
 }
 
@@ -2026,11 +2051,11 @@ ArticleSky article_sky(float eye_altitude_m, float zenith_illuminance) {
 
 // Light that a point scatters along a view ray, per metre.
 // Cost: 6 exp, 3 exp a step; 8 steps.
-vec3 article_source(ArticleSky sky, vec3 position_7, vec3 view_10, vec3 sun_1) {
+vec3 article_source(ArticleSky sky, vec3 position_7, vec3 view_11, vec3 sun_1) {
     float _e5 = article_distance_m(position_7, sun_1, ARTICLE_TOP_RADIUS_M);
     vec3 leaves = (position_7 + (sun_1 * _e5));
     vec3 _e8 = article_transmittance(position_7, leaves);
-    float mu_3 = dot(view_10, sun_1);
+    float mu_3 = dot(view_11, sun_1);
     vec3 _e10 = article_sigma_rayleigh(position_7);
     float _e11 = article_rayleigh_phase(mu_3);
     vec3 rayleigh = (_e10 * _e11);
@@ -2042,13 +2067,13 @@ vec3 article_source(ArticleSky sky, vec3 position_7, vec3 view_10, vec3 sun_1) {
 
 // Luminance of the sky along a direction above the horizon, without the sun's disc.
 // Cost: 15 exp a step; 8 steps, in each of which two marches of 8 steps take 6 of these, 456 in all.
-vec3 article_luminance(ArticleSky sky_1, vec3 view_11, vec3 sun_2) {
+vec3 article_luminance(ArticleSky sky_1, vec3 view_12, vec3 sun_2) {
     vec3 sum_6 = vec3(0.0);
     int i_13 = 0;
-    float _e6 = article_distance_m(sky_1.eye, view_11, ARTICLE_TOP_RADIUS_M);
-    vec3 leaves_1 = (sky_1.eye + (view_11 * _e6));
+    float _e6 = article_distance_m(sky_1.eye, view_12, ARTICLE_TOP_RADIUS_M);
+    vec3 leaves_1 = (sky_1.eye + (view_12 * _e6));
     vec3 ds_1 = ((leaves_1 - sky_1.eye) / vec3(8.0));
-    vec3 direction_14 = (ds_1 / vec3(length(ds_1)));
+    vec3 direction_15 = (ds_1 / vec3(length(ds_1)));
     bool loop_init_12 = true;
     while(true) {
         if (!loop_init_12) {
@@ -2066,7 +2091,7 @@ vec3 article_luminance(ArticleSky sky_1, vec3 view_11, vec3 sun_2) {
             vec3 s_2 = (sky_1.eye + ((float(_e26) + 0.5) * ds_1));
             vec3 _e32 = sum_6;
             vec3 _e34 = article_transmittance(sky_1.eye, s_2);
-            vec3 _e35 = article_source(sky_1, s_2, direction_14, sun_2);
+            vec3 _e35 = article_source(sky_1, s_2, direction_15, sun_2);
             sum_6 = (_e32 + (_e34 * _e35));
         }
     }
@@ -2076,11 +2101,11 @@ vec3 article_luminance(ArticleSky sky_1, vec3 view_11, vec3 sun_2) {
 
 // Luminance of the sun's disc along a direction above the horizon, whose edge is smooth from 0.95 to 1.05 of its radius. The cosine is clamped to 1, unlike as printed.
 // Cost: 3 exp, 3 exp a step; 8 steps.
-vec3 article_disc(ArticleSky sky_2, vec3 view_12, vec3 sun_3) {
-    float angle = acos(min(dot(view_12, sun_3), 1.0));
+vec3 article_disc(ArticleSky sky_2, vec3 view_13, vec3 sun_3) {
+    float angle = acos(min(dot(view_13, sun_3), 1.0));
     float disc = (1.0 - smoothstep((0.95 * sky_2.sun_radius_rad), (1.05 * sky_2.sun_radius_rad), angle));
-    float _e19 = article_distance_m(sky_2.eye, view_12, ARTICLE_TOP_RADIUS_M);
-    vec3 leaves_2 = (sky_2.eye + (view_12 * _e19));
+    float _e19 = article_distance_m(sky_2.eye, view_13, ARTICLE_TOP_RADIUS_M);
+    vec3 leaves_2 = (sky_2.eye + (view_13 * _e19));
     vec3 _e25 = article_transmittance(sky_2.eye, leaves_2);
     return ((sky_2.outer_space * disc) * _e25);
 }
@@ -2130,25 +2155,25 @@ vec4 sun_disc_radiance(LimbDarkening limb_1, vec4 mean_radiance, float sin_radiu
 
 // Reflection of sunlight at a place on the moon's disc, from unit vectors to the moon, from the moon to the sun and along the view: the law of Lommel and Seeliger, `mu_0 / (mu_0 + mu)` with the cosines of incidence and emission; 1/2 where they are equal, 0 outside the disc and on the night side.
 // Cost: no exp.
-float moon_reflection(vec3 moon, vec3 to_sun_1, float sin_radius_3, vec3 direction_13) {
-    bool local_18 = false;
+float moon_reflection(vec3 moon, vec3 to_sun_1, float sin_radius_3, vec3 direction_14) {
     bool local_19 = false;
-    vec3 apart_1 = (direction_13 - moon);
+    bool local_20 = false;
+    vec3 apart_1 = (direction_14 - moon);
     vec3 aside = ((apart_1 - (moon * dot(apart_1, moon))) / vec3(sin_radius_3));
     float emission = sqrt(max((1.0 - dot(aside, aside)), 0.0));
     float incidence = (dot(aside, to_sun_1) - (emission * dot(moon, to_sun_1)));
     if (!((emission <= 0.0))) {
-        local_18 = (incidence <= 0.0);
-    } else {
-        local_18 = true;
-    }
-    bool _e28 = local_18;
-    if (!(_e28)) {
-        local_19 = (dot(direction_13, moon) <= 0.0);
+        local_19 = (incidence <= 0.0);
     } else {
         local_19 = true;
     }
-    bool _e36 = local_19;
+    bool _e28 = local_19;
+    if (!(_e28)) {
+        local_20 = (dot(direction_14, moon) <= 0.0);
+    } else {
+        local_20 = true;
+    }
+    bool _e36 = local_20;
     if (_e36) {
         return 0.0;
     }

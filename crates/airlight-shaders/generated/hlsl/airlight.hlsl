@@ -1305,9 +1305,9 @@ LightRay light_ray(LocalLight light_8, float3 eye_2, float3 direction_2, float l
     float3 to_light_1 = (light_8.position - eye_2);
     float nearest_m_2 = length(cross(to_light_1, direction_2));
     if ((light_8.kind == LIGHT_SPHERE)) {
-        float distance_m_2 = length(to_light_1);
+        float distance_m_3 = length(to_light_1);
         float inside = ((light_8.radius_m - nearest_m_2) * (light_8.radius_m + nearest_m_2));
-        if ((distance_m_2 <= light_8.radius_m)) {
+        if ((distance_m_3 <= light_8.radius_m)) {
             geometry_4.length_m = 0.0;
         } else {
             float _e26 = geometry_4.start_m;
@@ -1319,7 +1319,7 @@ LightRay light_ray(LocalLight light_8, float3 eye_2, float3 direction_2, float l
             bool _e34 = local_12;
             if (_e34) {
                 float _e42 = geometry_4.start_m;
-                float hit_m = (((distance_m_2 - light_8.radius_m) * (distance_m_2 + light_8.radius_m)) / (sqrt(inside) - _e42));
+                float hit_m = (((distance_m_3 - light_8.radius_m) * (distance_m_3 + light_8.radius_m)) / (sqrt(inside) - _e42));
                 geometry_4.length_m = min(length_m_10, hit_m);
             }
         }
@@ -2112,6 +2112,33 @@ SpectralPath aerial_perspective(SkyView view_6, SkyScales scales_1, Texture3D<fl
     return spectralpath_1;
 }
 
+// Transmittance of the air between the eye and a point at a distance along a direction, at four wavelengths: that of `aerial_perspective` alone.
+// Cost: 4 exp, 1 read.
+float4 aerial_transmittance(SkyView view_7, Texture2D<float4> extinction_table_1, SamplerState linear_sampler_3, float3 direction_10, float distance_m_2)
+{
+    bool local_18 = (bool)0;
+
+    const float _e5 = elevation_of(direction_10);
+    bool is_below_4 = (_e5 < view_7.horizon_rad);
+    const float2 _e9 = air_span_m(view_7, direction_10.y, is_below_4);
+    float length_m_16 = (min(distance_m_2, _e9.y) - _e9.x);
+    if (!((length_m_16 <= 0.0))) {
+        local_18 = (_e5 > view_7.highest_rad);
+    } else {
+        local_18 = true;
+    }
+    bool _e22 = local_18;
+    if (_e22) {
+        return (1.0).xxxx;
+    }
+    const float _e32 = place_from_part(clamp((length_m_16 / (_e9.y - _e9.x)), 0.0, 1.0));
+    const float _e35 = row_coordinate(view_7, _e5, is_below_4, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    const float _e37 = texel_coordinate(_e32, AERIAL_DISTANCES);
+    float2 uv = float2(_e37, _e35);
+    float4 _e40 = extinction_table_1.SampleLevel(linear_sampler_3, uv, 0.0);
+    return exp((_e40 * (length_m_16 * -0.001)));
+}
+
 // Transmittance and path radiance in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
 // Cost: no exp.
 PathOptics rgb_path(RgbWeights radiance_3, RgbWeights transmittance, SpectralPath path_1)
@@ -2132,12 +2159,12 @@ float fog_row_place(float per_sine, float sine, float elevation_rad_2)
 
 // Texture coordinate of the rows of a direction: falling rays come first.
 // Cost: 2 exp.
-float fog_row_coordinate(FogTableView view_7, float3 direction_10)
+float fog_row_coordinate(FogTableView view_8, float3 direction_11)
 {
-    bool is_above = (direction_10.y > 0.0);
-    float per_sine_1 = (is_above ? view_7.above_per_sine : view_7.below_per_sine);
-    const float _e10 = elevation_of(direction_10);
-    const float _e12 = fog_row_place(per_sine_1, abs(direction_10.y), abs(_e10));
+    bool is_above = (direction_11.y > 0.0);
+    float per_sine_1 = (is_above ? view_8.above_per_sine : view_8.below_per_sine);
+    const float _e10 = elevation_of(direction_11);
+    const float _e12 = fog_row_place(per_sine_1, abs(direction_11.y), abs(_e10));
     return ((((is_above ? FOG_ROWS : 0.0) + 0.5) + (_e12 * 63.0)) / 128.0);
 }
 
@@ -2151,9 +2178,9 @@ float3 fog_opacity(float3 depth_2)
 
 // Place of a distance, 0 to 1, from the opacity and the transmittance up to there, relative to those of the whole ray to the ground or through the fog.
 // Cost: 6 exp.
-float fog_distance_place(FogTableView view_8, float sin_elevation_10, float3 opacity, float3 transmittance_1)
+float fog_distance_place(FogTableView view_9, float sin_elevation_10, float3 opacity, float3 transmittance_1)
 {
-    float3 vertical = ((sin_elevation_10 > 0.0) ? view_8.depth_above : view_8.depth_below);
+    float3 vertical = ((sin_elevation_10 > 0.0) ? view_9.depth_above : view_9.depth_below);
     float3 depth_6 = min((vertical / (max(abs(sin_elevation_10), 1e-10)).xxx), (1e25).xxx);
     const float3 _e17 = fog_opacity(depth_6);
     float whole = dot(_e17, (1.0).xxx);
@@ -2165,36 +2192,36 @@ float fog_distance_place(FogTableView view_8, float sin_elevation_10, float3 opa
 
 // Sunlight that a stream (0, 1 or 2) scatters once, per unit of opacity, before its scale: from the texture coordinates of distance, row and angle.
 // Cost: 3 exp, 2 reads.
-float3 fog_stream_light(Texture3D<float4> stream_table, Texture2D<float4> stream_phase_table, SamplerState linear_sampler_3, float3 place_4, float stream)
+float3 fog_stream_light(Texture3D<float4> stream_table, Texture2D<float4> stream_phase_table, SamplerState linear_sampler_4, float3 place_4, float stream)
 {
     float layer_5 = ((stream + 0.5) / 3.0);
-    float4 logarithms = stream_table.SampleLevel(linear_sampler_3, float3(place_4.xy, layer_5), 0.0);
-    float4 phase_1 = stream_phase_table.SampleLevel(linear_sampler_3, float2(place_4.z, layer_5), 0.0);
+    float4 logarithms = stream_table.SampleLevel(linear_sampler_4, float3(place_4.xy, layer_5), 0.0);
+    float4 phase_1 = stream_phase_table.SampleLevel(linear_sampler_4, float2(place_4.z, layer_5), 0.0);
     return (exp(logarithms.xyz) * phase_1.xyz);
 }
 
 // Fog between the eye and a point, by the optical depth on the way: extinction times `exponential_column_m`, or the column of another profile. Rays end at the ground.
 // Cost: 23 exp, 7 reads.
-PathOptics tabulated_fog(FogTableView view_9, Texture3D<float4> diffuse_table, Texture3D<float4> stream_table_1, Texture2D<float4> stream_phase_table_1, SamplerState linear_sampler_4, float3 direction_11, float3 optical_depth_2)
+PathOptics tabulated_fog(FogTableView view_10, Texture3D<float4> diffuse_table, Texture3D<float4> stream_table_1, Texture2D<float4> stream_phase_table_1, SamplerState linear_sampler_5, float3 direction_12, float3 optical_depth_2)
 {
     const float3 _e7 = fog_opacity(optical_depth_2);
     float3 transmittance_3 = exp(-(optical_depth_2));
-    const float _e11 = azimuth_place(direction_11, view_9.sun);
+    const float _e11 = azimuth_place(direction_12, view_10.sun);
     const float _e13 = texel_coordinate(_e11, FOG_AZIMUTHS);
-    const float _e14 = fog_row_coordinate(view_9, direction_11);
-    const float _e16 = fog_distance_place(view_9, direction_11.y, _e7, transmittance_3);
+    const float _e14 = fog_row_coordinate(view_10, direction_12);
+    const float _e16 = fog_distance_place(view_10, direction_12.y, _e7, transmittance_3);
     const float _e18 = texel_coordinate(_e16, FOG_DISTANCES);
-    float4 _e21 = diffuse_table.SampleLevel(linear_sampler_4, float3(_e13, _e14, _e18), 0.0);
+    float4 _e21 = diffuse_table.SampleLevel(linear_sampler_5, float3(_e13, _e14, _e18), 0.0);
     float3 diffuse = _e21.xyz;
-    const float _e24 = one_minus_cos_between(direction_11, view_9.sun);
+    const float _e24 = one_minus_cos_between(direction_12, view_10.sun);
     const float _e25 = phase_place(_e24);
     const float _e27 = texel_coordinate(_e25, PHASE_ANGLES);
     float3 place_9 = float3(_e18, _e14, _e27);
-    const float3 _e30 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_4, place_9, 0.0);
-    const float3 _e32 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_4, place_9, 1.0);
-    const float3 _e35 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_4, place_9, 2.0);
+    const float3 _e30 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_5, place_9, 0.0);
+    const float3 _e32 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_5, place_9, 1.0);
+    const float3 _e35 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_5, place_9, 2.0);
     float3 sunlit_2 = ((_e30 + _e32) + _e35);
-    float3 source_1 = ((view_9.diffuse_scale * diffuse) + (view_9.sunlit_scale * max(sunlit_2, (0.0).xxx)));
+    float3 source_1 = ((view_10.diffuse_scale * diffuse) + (view_10.sunlit_scale * max(sunlit_2, (0.0).xxx)));
     const PathOptics pathoptics_13 = ConstructPathOptics(transmittance_3, (_e7 * source_1));
     return pathoptics_13;
 }
@@ -2266,9 +2293,9 @@ float3 article_transmittance(float3 from_m_8, float3 to_m_6)
 
 // Distance to a sphere around the centre from a point inside, m.
 // Cost: no exp.
-float article_distance_m(float3 origin, float3 direction_12, float radius_m_3)
+float article_distance_m(float3 origin, float3 direction_13, float radius_m_3)
 {
-    float b_4 = dot(origin, direction_12);
+    float b_4 = dot(origin, direction_13);
     return (-(b_4) + sqrt(((b_4 * b_4) - (dot(origin, origin) - (radius_m_3 * radius_m_3)))));
 }
 
@@ -2311,12 +2338,12 @@ ArticleSky article_sky(float eye_altitude_m, float zenith_illuminance)
 
 // Light that a point scatters along a view ray, per metre.
 // Cost: 6 exp, 3 exp a step; 8 steps.
-float3 article_source(ArticleSky sky, float3 position_7, float3 view_10, float3 sun_1)
+float3 article_source(ArticleSky sky, float3 position_7, float3 view_11, float3 sun_1)
 {
     const float _e5 = article_distance_m(position_7, sun_1, ARTICLE_TOP_RADIUS_M);
     float3 leaves = (position_7 + (sun_1 * _e5));
     const float3 _e8 = article_transmittance(position_7, leaves);
-    float mu_3 = dot(view_10, sun_1);
+    float mu_3 = dot(view_11, sun_1);
     const float3 _e10 = article_sigma_rayleigh(position_7);
     const float _e11 = article_rayleigh_phase(mu_3);
     float3 rayleigh = (_e10 * _e11);
@@ -2328,15 +2355,15 @@ float3 article_source(ArticleSky sky, float3 position_7, float3 view_10, float3 
 
 // Luminance of the sky along a direction above the horizon, without the sun's disc.
 // Cost: 15 exp a step; 8 steps, in each of which two marches of 8 steps take 6 of these, 456 in all.
-float3 article_luminance(ArticleSky sky_1, float3 view_11, float3 sun_2)
+float3 article_luminance(ArticleSky sky_1, float3 view_12, float3 sun_2)
 {
     float3 sum_6 = (0.0).xxx;
     int i_13 = int(0);
 
-    const float _e6 = article_distance_m(sky_1.eye, view_11, ARTICLE_TOP_RADIUS_M);
-    float3 leaves_1 = (sky_1.eye + (view_11 * _e6));
+    const float _e6 = article_distance_m(sky_1.eye, view_12, ARTICLE_TOP_RADIUS_M);
+    float3 leaves_1 = (sky_1.eye + (view_12 * _e6));
     float3 ds_1 = ((leaves_1 - sky_1.eye) / (8.0).xxx);
-    float3 direction_14 = (ds_1 / (length(ds_1)).xxx);
+    float3 direction_15 = (ds_1 / (length(ds_1)).xxx);
     bool loop_init_12 = true;
     while(true) {
         if (!loop_init_12) {
@@ -2354,7 +2381,7 @@ float3 article_luminance(ArticleSky sky_1, float3 view_11, float3 sun_2)
             float3 s_2 = (sky_1.eye + ((float(_e26) + 0.5) * ds_1));
             float3 _e32 = sum_6;
             const float3 _e34 = article_transmittance(sky_1.eye, s_2);
-            const float3 _e35 = article_source(sky_1, s_2, direction_14, sun_2);
+            const float3 _e35 = article_source(sky_1, s_2, direction_15, sun_2);
             sum_6 = (_e32 + (_e34 * _e35));
         }
     }
@@ -2364,12 +2391,12 @@ float3 article_luminance(ArticleSky sky_1, float3 view_11, float3 sun_2)
 
 // Luminance of the sun's disc along a direction above the horizon, whose edge is smooth from 0.95 to 1.05 of its radius. The cosine is clamped to 1, unlike as printed.
 // Cost: 3 exp, 3 exp a step; 8 steps.
-float3 article_disc(ArticleSky sky_2, float3 view_12, float3 sun_3)
+float3 article_disc(ArticleSky sky_2, float3 view_13, float3 sun_3)
 {
-    float angle = acos(min(dot(view_12, sun_3), 1.0));
+    float angle = acos(min(dot(view_13, sun_3), 1.0));
     float disc = (1.0 - smoothstep((0.95 * sky_2.sun_radius_rad), (1.05 * sky_2.sun_radius_rad), angle));
-    const float _e19 = article_distance_m(sky_2.eye, view_12, ARTICLE_TOP_RADIUS_M);
-    float3 leaves_2 = (sky_2.eye + (view_12 * _e19));
+    const float _e19 = article_distance_m(sky_2.eye, view_13, ARTICLE_TOP_RADIUS_M);
+    float3 leaves_2 = (sky_2.eye + (view_13 * _e19));
     const float3 _e25 = article_transmittance(sky_2.eye, leaves_2);
     return ((sky_2.outer_space * disc) * _e25);
 }
@@ -2436,27 +2463,27 @@ float4 sun_disc_radiance(LimbDarkening limb_1, float4 mean_radiance, float sin_r
 
 // Reflection of sunlight at a place on the moon's disc, from unit vectors to the moon, from the moon to the sun and along the view: the law of Lommel and Seeliger, `mu_0 / (mu_0 + mu)` with the cosines of incidence and emission; 1/2 where they are equal, 0 outside the disc and on the night side.
 // Cost: no exp.
-float moon_reflection(float3 moon, float3 to_sun_1, float sin_radius_3, float3 direction_13)
+float moon_reflection(float3 moon, float3 to_sun_1, float sin_radius_3, float3 direction_14)
 {
-    bool local_18 = (bool)0;
     bool local_19 = (bool)0;
+    bool local_20 = (bool)0;
 
-    float3 apart_1 = (direction_13 - moon);
+    float3 apart_1 = (direction_14 - moon);
     float3 aside = ((apart_1 - (moon * dot(apart_1, moon))) / (sin_radius_3).xxx);
     float emission = sqrt(max((1.0 - dot(aside, aside)), 0.0));
     float incidence = (dot(aside, to_sun_1) - (emission * dot(moon, to_sun_1)));
     if (!((emission <= 0.0))) {
-        local_18 = (incidence <= 0.0);
-    } else {
-        local_18 = true;
-    }
-    bool _e28 = local_18;
-    if (!(_e28)) {
-        local_19 = (dot(direction_13, moon) <= 0.0);
+        local_19 = (incidence <= 0.0);
     } else {
         local_19 = true;
     }
-    bool _e36 = local_19;
+    bool _e28 = local_19;
+    if (!(_e28)) {
+        local_20 = (dot(direction_14, moon) <= 0.0);
+    } else {
+        local_20 = true;
+    }
+    bool _e36 = local_20;
     if (_e36) {
         return 0.0;
     }

@@ -1356,9 +1356,9 @@ LightRay light_ray(
     metal::float3 to_light_1 = light_8.position - eye_2;
     float nearest_m_2 = metal::length(metal::cross(to_light_1, direction_2));
     if (light_8.kind == LIGHT_SPHERE) {
-        float distance_m_2 = metal::length(to_light_1);
+        float distance_m_3 = metal::length(to_light_1);
         float inside = (light_8.radius_m - nearest_m_2) * (light_8.radius_m + nearest_m_2);
-        if (distance_m_2 <= light_8.radius_m) {
+        if (distance_m_3 <= light_8.radius_m) {
             geometry_4.length_m = 0.0;
         } else {
             float _e26 = geometry_4.start_m;
@@ -1370,7 +1370,7 @@ LightRay light_ray(
             bool _e34 = local_12;
             if (_e34) {
                 float _e42 = geometry_4.start_m;
-                float hit_m = ((distance_m_2 - light_8.radius_m) * (distance_m_2 + light_8.radius_m)) / (metal::sqrt(inside) - _e42);
+                float hit_m = ((distance_m_3 - light_8.radius_m) * (distance_m_3 + light_8.radius_m)) / (metal::sqrt(inside) - _e42);
                 geometry_4.length_m = metal::min(length_m_10, hit_m);
             }
         }
@@ -2250,6 +2250,37 @@ SpectralPath aerial_perspective(
     return SpectralPath {metal::float4(1.0) - opacity_2, (smooth_light_1 + (haze_1 * _e52)) * opacity_2};
 }
 
+// Transmittance of the air between the eye and a point at a distance along a direction, at four wavelengths: that of `aerial_perspective` alone.
+// Cost: 4 exp, 1 read.
+metal::float4 aerial_transmittance(
+    SkyView view_7,
+    metal::texture2d<float, metal::access::sample> extinction_table_1,
+    metal::sampler linear_sampler_3,
+    metal::float3 direction_10,
+    float distance_m_2
+) {
+    bool local_18 = {};
+    float _e5 = elevation_of(direction_10);
+    bool is_below_4 = _e5 < view_7.horizon_rad;
+    metal::float2 _e9 = air_span_m(view_7, direction_10.y, is_below_4);
+    float length_m_16 = metal::min(distance_m_2, _e9.y) - _e9.x;
+    if (!((length_m_16 <= 0.0))) {
+        local_18 = _e5 > view_7.highest_rad;
+    } else {
+        local_18 = true;
+    }
+    bool _e22 = local_18;
+    if (_e22) {
+        return metal::float4(1.0);
+    }
+    float _e32 = place_from_part(metal::clamp(length_m_16 / (_e9.y - _e9.x), 0.0, 1.0));
+    float _e35 = row_coordinate(view_7, _e5, is_below_4, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    float _e37 = texel_coordinate(_e32, AERIAL_DISTANCES);
+    metal::float2 uv = metal::float2(_e37, _e35);
+    metal::float4 _e40 = extinction_table_1.sample(linear_sampler_3, uv, metal::level(0.0));
+    return metal::exp(_e40 * (length_m_16 * -0.001));
+}
+
 // Transmittance and path radiance in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
 // Cost: no exp.
 PathOptics rgb_path(
@@ -2276,13 +2307,13 @@ float fog_row_place(
 // Texture coordinate of the rows of a direction: falling rays come first.
 // Cost: 2 exp.
 float fog_row_coordinate(
-    FogTableView view_7,
-    metal::float3 direction_10
+    FogTableView view_8,
+    metal::float3 direction_11
 ) {
-    bool is_above = direction_10.y > 0.0;
-    float per_sine_1 = is_above ? view_7.above_per_sine : view_7.below_per_sine;
-    float _e10 = elevation_of(direction_10);
-    float _e12 = fog_row_place(per_sine_1, metal::abs(direction_10.y), metal::abs(_e10));
+    bool is_above = direction_11.y > 0.0;
+    float per_sine_1 = is_above ? view_8.above_per_sine : view_8.below_per_sine;
+    float _e10 = elevation_of(direction_11);
+    float _e12 = fog_row_place(per_sine_1, metal::abs(direction_11.y), metal::abs(_e10));
     return (((is_above ? FOG_ROWS : 0.0) + 0.5) + (_e12 * 63.0)) / 128.0;
 }
 
@@ -2298,12 +2329,12 @@ metal::float3 fog_opacity(
 // Place of a distance, 0 to 1, from the opacity and the transmittance up to there, relative to those of the whole ray to the ground or through the fog.
 // Cost: 6 exp.
 float fog_distance_place(
-    FogTableView view_8,
+    FogTableView view_9,
     float sin_elevation_10,
     metal::float3 opacity,
     metal::float3 transmittance_1
 ) {
-    metal::float3 vertical = (sin_elevation_10 > 0.0) ? view_8.depth_above : view_8.depth_below;
+    metal::float3 vertical = (sin_elevation_10 > 0.0) ? view_9.depth_above : view_9.depth_below;
     metal::float3 depth_6 = metal::min(vertical / metal::float3(metal::max(metal::abs(sin_elevation_10), 0.0000000001)), metal::float3(10000000000000000000000000.0));
     metal::float3 _e17 = fog_opacity(depth_6);
     float whole = metal::dot(_e17, metal::float3(1.0));
@@ -2318,45 +2349,45 @@ float fog_distance_place(
 metal::float3 fog_stream_light(
     metal::texture3d<float, metal::access::sample> stream_table,
     metal::texture2d<float, metal::access::sample> stream_phase_table,
-    metal::sampler linear_sampler_3,
+    metal::sampler linear_sampler_4,
     metal::float3 place_4,
     float stream
 ) {
     float layer_5 = (stream + 0.5) / 3.0;
-    metal::float4 logarithms = stream_table.sample(linear_sampler_3, metal::float3(place_4.xy, layer_5), metal::level(0.0));
-    metal::float4 phase_1 = stream_phase_table.sample(linear_sampler_3, metal::float2(place_4.z, layer_5), metal::level(0.0));
+    metal::float4 logarithms = stream_table.sample(linear_sampler_4, metal::float3(place_4.xy, layer_5), metal::level(0.0));
+    metal::float4 phase_1 = stream_phase_table.sample(linear_sampler_4, metal::float2(place_4.z, layer_5), metal::level(0.0));
     return metal::exp(logarithms.xyz) * phase_1.xyz;
 }
 
 // Fog between the eye and a point, by the optical depth on the way: extinction times `exponential_column_m`, or the column of another profile. Rays end at the ground.
 // Cost: 23 exp, 7 reads.
 PathOptics tabulated_fog(
-    FogTableView view_9,
+    FogTableView view_10,
     metal::texture3d<float, metal::access::sample> diffuse_table,
     metal::texture3d<float, metal::access::sample> stream_table_1,
     metal::texture2d<float, metal::access::sample> stream_phase_table_1,
-    metal::sampler linear_sampler_4,
-    metal::float3 direction_11,
+    metal::sampler linear_sampler_5,
+    metal::float3 direction_12,
     metal::float3 optical_depth_2
 ) {
     metal::float3 _e7 = fog_opacity(optical_depth_2);
     metal::float3 transmittance_3 = metal::exp(-(optical_depth_2));
-    float _e11 = azimuth_place(direction_11, view_9.sun);
+    float _e11 = azimuth_place(direction_12, view_10.sun);
     float _e13 = texel_coordinate(_e11, FOG_AZIMUTHS);
-    float _e14 = fog_row_coordinate(view_9, direction_11);
-    float _e16 = fog_distance_place(view_9, direction_11.y, _e7, transmittance_3);
+    float _e14 = fog_row_coordinate(view_10, direction_12);
+    float _e16 = fog_distance_place(view_10, direction_12.y, _e7, transmittance_3);
     float _e18 = texel_coordinate(_e16, FOG_DISTANCES);
-    metal::float4 _e21 = diffuse_table.sample(linear_sampler_4, metal::float3(_e13, _e14, _e18), metal::level(0.0));
+    metal::float4 _e21 = diffuse_table.sample(linear_sampler_5, metal::float3(_e13, _e14, _e18), metal::level(0.0));
     metal::float3 diffuse = _e21.xyz;
-    float _e24 = one_minus_cos_between(direction_11, view_9.sun);
+    float _e24 = one_minus_cos_between(direction_12, view_10.sun);
     float _e25 = phase_place(_e24);
     float _e27 = texel_coordinate(_e25, PHASE_ANGLES);
     metal::float3 place_9 = metal::float3(_e18, _e14, _e27);
-    metal::float3 _e30 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_4, place_9, 0.0);
-    metal::float3 _e32 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_4, place_9, 1.0);
-    metal::float3 _e35 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_4, place_9, 2.0);
+    metal::float3 _e30 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_5, place_9, 0.0);
+    metal::float3 _e32 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_5, place_9, 1.0);
+    metal::float3 _e35 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_5, place_9, 2.0);
     metal::float3 sunlit_2 = (_e30 + _e32) + _e35;
-    metal::float3 source_1 = (view_9.diffuse_scale * diffuse) + (view_9.sunlit_scale * metal::max(sunlit_2, metal::float3(0.0)));
+    metal::float3 source_1 = (view_10.diffuse_scale * diffuse) + (view_10.sunlit_scale * metal::max(sunlit_2, metal::float3(0.0)));
     return PathOptics {transmittance_3, _e7 * source_1};
 }
 
@@ -2434,10 +2465,10 @@ metal::float3 article_transmittance(
 // Cost: no exp.
 float article_distance_m(
     metal::float3 origin,
-    metal::float3 direction_12,
+    metal::float3 direction_13,
     float radius_m_3
 ) {
-    float b_4 = metal::dot(origin, direction_12);
+    float b_4 = metal::dot(origin, direction_13);
     return -(b_4) + metal::sqrt((b_4 * b_4) - (metal::dot(origin, origin) - (radius_m_3 * radius_m_3)));
 }
 
@@ -2477,13 +2508,13 @@ ArticleSky article_sky(
 metal::float3 article_source(
     ArticleSky sky,
     metal::float3 position_7,
-    metal::float3 view_10,
+    metal::float3 view_11,
     metal::float3 sun_1
 ) {
     float _e5 = article_distance_m(position_7, sun_1, ARTICLE_TOP_RADIUS_M);
     metal::float3 leaves = position_7 + (sun_1 * _e5);
     metal::float3 _e8 = article_transmittance(position_7, leaves);
-    float mu_3 = metal::dot(view_10, sun_1);
+    float mu_3 = metal::dot(view_11, sun_1);
     metal::float3 _e10 = article_sigma_rayleigh(position_7);
     float _e11 = article_rayleigh_phase(mu_3);
     metal::float3 rayleigh = _e10 * _e11;
@@ -2497,15 +2528,15 @@ metal::float3 article_source(
 // Cost: 15 exp a step; 8 steps, in each of which two marches of 8 steps take 6 of these, 456 in all.
 metal::float3 article_luminance(
     ArticleSky sky_1,
-    metal::float3 view_11,
+    metal::float3 view_12,
     metal::float3 sun_2
 ) {
     metal::float3 sum_6 = metal::float3(0.0);
     int i_13 = 0;
-    float _e6 = article_distance_m(sky_1.eye, view_11, ARTICLE_TOP_RADIUS_M);
-    metal::float3 leaves_1 = sky_1.eye + (view_11 * _e6);
+    float _e6 = article_distance_m(sky_1.eye, view_12, ARTICLE_TOP_RADIUS_M);
+    metal::float3 leaves_1 = sky_1.eye + (view_12 * _e6);
     metal::float3 ds_1 = (leaves_1 - sky_1.eye) / metal::float3(8.0);
-    metal::float3 direction_14 = ds_1 / metal::float3(metal::length(ds_1));
+    metal::float3 direction_15 = ds_1 / metal::float3(metal::length(ds_1));
     bool loop_init_12 = true;
     while(true) {
         if (!loop_init_12) {
@@ -2523,7 +2554,7 @@ metal::float3 article_luminance(
             metal::float3 s_2 = sky_1.eye + ((static_cast<float>(_e26) + 0.5) * ds_1);
             metal::float3 _e32 = sum_6;
             metal::float3 _e34 = article_transmittance(sky_1.eye, s_2);
-            metal::float3 _e35 = article_source(sky_1, s_2, direction_14, sun_2);
+            metal::float3 _e35 = article_source(sky_1, s_2, direction_15, sun_2);
             sum_6 = _e32 + (_e34 * _e35);
         }
     }
@@ -2535,13 +2566,13 @@ metal::float3 article_luminance(
 // Cost: 3 exp, 3 exp a step; 8 steps.
 metal::float3 article_disc(
     ArticleSky sky_2,
-    metal::float3 view_12,
+    metal::float3 view_13,
     metal::float3 sun_3
 ) {
-    float angle = metal::acos(metal::min(metal::dot(view_12, sun_3), 1.0));
+    float angle = metal::acos(metal::min(metal::dot(view_13, sun_3), 1.0));
     float disc = 1.0 - metal::smoothstep(0.95 * sky_2.sun_radius_rad, 1.05 * sky_2.sun_radius_rad, angle);
-    float _e19 = article_distance_m(sky_2.eye, view_12, ARTICLE_TOP_RADIUS_M);
-    metal::float3 leaves_2 = sky_2.eye + (view_12 * _e19);
+    float _e19 = article_distance_m(sky_2.eye, view_13, ARTICLE_TOP_RADIUS_M);
+    metal::float3 leaves_2 = sky_2.eye + (view_13 * _e19);
     metal::float3 _e25 = article_transmittance(sky_2.eye, leaves_2);
     return (sky_2.outer_space * disc) * _e25;
 }
@@ -2613,26 +2644,26 @@ float moon_reflection(
     metal::float3 moon,
     metal::float3 to_sun_1,
     float sin_radius_3,
-    metal::float3 direction_13
+    metal::float3 direction_14
 ) {
-    bool local_18 = {};
     bool local_19 = {};
-    metal::float3 apart_1 = direction_13 - moon;
+    bool local_20 = {};
+    metal::float3 apart_1 = direction_14 - moon;
     metal::float3 aside = (apart_1 - (moon * metal::dot(apart_1, moon))) / metal::float3(sin_radius_3);
     float emission = metal::sqrt(metal::max(1.0 - metal::dot(aside, aside), 0.0));
     float incidence = metal::dot(aside, to_sun_1) - (emission * metal::dot(moon, to_sun_1));
     if (!((emission <= 0.0))) {
-        local_18 = incidence <= 0.0;
-    } else {
-        local_18 = true;
-    }
-    bool _e28 = local_18;
-    if (!(_e28)) {
-        local_19 = metal::dot(direction_13, moon) <= 0.0;
+        local_19 = incidence <= 0.0;
     } else {
         local_19 = true;
     }
-    bool _e36 = local_19;
+    bool _e28 = local_19;
+    if (!(_e28)) {
+        local_20 = metal::dot(direction_14, moon) <= 0.0;
+    } else {
+        local_20 = true;
+    }
+    bool _e36 = local_20;
     if (_e36) {
         return 0.0;
     }

@@ -289,6 +289,34 @@ pub fn aerial_perspective(
     }
 }
 
+/// Transmittance of the air between the eye and a point at a distance along a direction, at four wavelengths: that of
+/// [`aerial_perspective`] alone.
+pub fn aerial_transmittance(
+    view: SkyView,
+    extinction_table: &Texture2d,
+    linear_sampler: LinearSampler,
+    direction: Vec3,
+    distance_m: f32,
+) -> Vec4 {
+    let elevation_rad = elevation_of(direction);
+    let is_below = elevation_rad < view.horizon_rad;
+    let span = air_span_m(view, direction.y, is_below);
+    let length_m = distance_m.min(span.y) - span.x;
+    if length_m <= 0.0 || elevation_rad > view.highest_rad {
+        return Vec4::ONE;
+    }
+    let place = place_from_part((length_m / (span.y - span.x)).clamp(0.0, 1.0));
+    let row = row_coordinate(
+        view,
+        elevation_rad,
+        is_below,
+        AERIAL_ROWS_ABOVE,
+        AERIAL_ROWS_BELOW,
+    );
+    let uv = Vec2::new(texel_coordinate(place, AERIAL_DISTANCES), row);
+    (extinction_table.sample(linear_sampler, uv) * (length_m * -1e-3)).exp()
+}
+
 /// Transmittance and path radiance in red, green and blue, for scenes in these.
 pub fn rgb_path(radiance: RgbWeights, transmittance: RgbWeights, path: SpectralPath) -> PathOptics {
     PathOptics {

@@ -208,8 +208,8 @@ fn aerial(x: &[f64]) -> Vec<f64> {
 }
 
 /// Twins with the textures of the tests.
-fn with_textures() -> [(&'static str, FlatFunction); 3] {
-    use twins::sky_tables::{aerial_perspective, haze_phase, sky_radiance};
+fn with_textures() -> [(&'static str, FlatFunction); 4] {
+    use twins::sky_tables::{aerial_perspective, aerial_transmittance, haze_phase, sky_radiance};
     let haze = |one_minus_cos: f32| {
         haze_phase(
             textures::named("phase_table_2d"),
@@ -235,10 +235,15 @@ fn with_textures() -> [(&'static str, FlatFunction); 3] {
             view, scales, smooth, haze, extinction, phase, sampler, direction, distance_m,
         )
     };
+    let transmittance = |view: SkyView, direction: Vec3, distance_m: f32| {
+        let extinction = textures::named("extinction_table_2d");
+        aerial_transmittance(view, extinction, LinearSampler, direction, distance_m)
+    };
     [
         ("haze_phase", haze.flat()),
         ("sky_radiance", sky.flat()),
         ("aerial_perspective", aerial.flat()),
+        ("aerial_transmittance", transmittance.flat()),
     ]
 }
 
@@ -310,6 +315,11 @@ pub fn sky_tables() -> Vec<Row> {
                     let direction = all.split_off(8);
                     [all, scales(r), direction].concat()
                 },
+                "aerial_transmittance" => |r| {
+                    let mut all = view_and_direction(r);
+                    all.push(r.length_m());
+                    all
+                },
                 _ => |r| {
                     let mut all = view_and_direction(r);
                     let direction = all.split_off(8);
@@ -319,6 +329,11 @@ pub fn sky_tables() -> Vec<Row> {
             exact: match name {
                 "haze_phase" => Box::new(|x| haze_phase(x[0]).to_vec()),
                 "sky_radiance" => Box::new(sky),
+                // As of the path, whose scales do not matter.
+                "aerial_transmittance" => Box::new(|x| {
+                    let path = aerial(&[&x[..8], &[1.0; 8], &x[8..]].concat());
+                    path[..4].to_vec()
+                }),
                 _ => Box::new(aerial),
             },
         });
