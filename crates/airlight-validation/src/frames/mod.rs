@@ -6,6 +6,7 @@
 //! are taken as red, green and blue, as real-time programs do.
 
 mod case;
+pub mod hillaire2020;
 mod pixels;
 mod renderers;
 

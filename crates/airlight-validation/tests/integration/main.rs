@@ -2,5 +2,7 @@
 
 #[cfg(feature = "gpu")]
 mod frames;
+#[cfg(feature = "gpu")]
+mod hillaire2020;
 mod monte_carlo;
 mod report;
