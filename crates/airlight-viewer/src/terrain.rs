@@ -4,6 +4,15 @@ use crate::state::Terrain;
 use airlight_gpu::HeightField;
 use airlight_image::input::{DepthMap, DepthMeaning, DepthOptions, read_depth_bytes};
 
+/// Heights of a terrain's file, or why there are none.
+#[derive(Debug)]
+pub struct LoadedTerrain {
+    pub file: Option<String>,
+    pub spacing_m: Option<f64>,
+    pub number: u64,
+    pub heights: Result<HeightField, String>,
+}
+
 /// Heights around the Jacksboro fault in the Cumberland Mountains, m above sea level, 16-bit grey, from north to south.
 const CUMBERLAND: &[u8] = include_bytes!("../data/jacksboro_dem_m.png");
 /// Its distances between columns and rows, m: 3 arc seconds at 36.6 degrees north.
