@@ -42,6 +42,11 @@ pub enum SkyRendererError {
         "expected an exponential fog around lights, got another profile; try the fog without lights"
     )]
     LightProfile,
+    /// The device is lost.
+    #[error(
+        "expected a device that can draw, got one that is lost; try SkyRenderer::recreate with another"
+    )]
+    DeviceLost,
     /// The target cannot be blended.
     #[error(
         "expected a target format that the device can blend, got {0:?}; try TextureFormat::Rgba16Float"

@@ -69,6 +69,18 @@ impl SkySolver {
         })
     }
 
+    /// A solver with the settings of this one in another atmosphere, for which it solves.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn in_atmosphere(&self, atmosphere: &Atmosphere) -> Result<Self, SkyRendererError> {
+        let solver = Self::new(atmosphere, &self.settings, self.space)?;
+        match self.single {
+            Some(_) => solver.with_shadows(),
+            None => Ok(solver),
+        }
+    }
+
     /// This solver, whose tables hold what shadows in the air need, too.
     ///
     /// # Errors

@@ -2,11 +2,10 @@
 //! pixels.
 
 use crate::camera::{Camera, Projection};
-use crate::pass::bytes;
+use crate::pass::{bytes, filled};
 use crate::passes::SkyPasses;
 use crate::read::{ReadTextureError, read_rgb};
 use glam::{Mat4, Vec3};
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// Format of the target of [`Headless::draw`].
 pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -248,13 +247,8 @@ impl Headless {
         let of_pixel = |(x, y)| geometry.map_or(0.0, |g| frame.depth(x, y, (g.distance_m)(x, y)));
         let depths: Vec<f32> = pixels.map(of_pixel).collect();
         let colour = geometry.map_or([0.0; 3], |g| g.colour);
-        let buffer = |contents: &[u8], usage| {
-            self.device.create_buffer_init(&BufferInitDescriptor {
-                label: Some("airlight geometry"),
-                contents,
-                usage,
-            })
-        };
+        let buffer =
+            |contents: &[u8], usage| filled(&self.device, "airlight geometry", contents, usage);
         let depths = buffer(&bytes(&depths), wgpu::BufferUsages::STORAGE);
         let mut surface = bytes(&colour.map(|c| c as f32));
         surface.extend(side.to_ne_bytes());

@@ -13,6 +13,7 @@
 //! The eye is the origin, y is up at the eye, distances are in metres, light is in cd/m^2 times an exposure.
 
 mod camera;
+mod device_loss;
 mod disc;
 mod environment;
 mod error;
@@ -35,6 +36,7 @@ mod terrain_point;
 mod tone;
 
 pub use camera::{Camera, Projection};
+pub use device_loss::is_device_lost;
 pub use disc::DiscTable;
 pub use environment::EnvironmentMap;
 pub use error::SkyRendererError;

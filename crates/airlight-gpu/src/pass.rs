@@ -1,7 +1,5 @@
 //! Passes that cover a target; over a frame, one dims it and one adds light.
 
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
-
 /// The vertex stage of [`covering`] pipelines.
 pub const CORNER: &str = include_str!("corner.wgsl");
 
@@ -82,11 +80,28 @@ pub fn bind_group(
 
 /// A buffer with the numbers of a pass, for a [`UNIFORM`].
 pub fn uniform(device: &wgpu::Device, label: &str, numbers: &[f32]) -> wgpu::Buffer {
-    device.create_buffer_init(&BufferInitDescriptor {
+    filled(device, label, &bytes(numbers), wgpu::BufferUsages::UNIFORM)
+}
+
+/// A buffer with contents of whole words. On a device that is lost it holds nothing, as nothing will be drawn with it.
+pub fn filled(
+    device: &wgpu::Device,
+    label: &str,
+    contents: &[u8],
+    usage: wgpu::BufferUsages,
+) -> wgpu::Buffer {
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
-        contents: &bytes(numbers),
-        usage: wgpu::BufferUsages::UNIFORM,
-    })
+        size: contents.len() as u64,
+        usage,
+        mapped_at_creation: true,
+    });
+    if let Ok(mut mapped) = buffer.get_mapped_range_mut(..) {
+        mapped.copy_from_slice(contents);
+        drop(mapped);
+        buffer.unmap();
+    }
+    buffer
 }
 
 /// Numbers as a buffer holds them.

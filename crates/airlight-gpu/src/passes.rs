@@ -1,6 +1,7 @@
 //! [`SkyPasses`].
 
 use crate::camera::{Camera, Projection};
+use crate::device_loss::is_device_lost;
 use crate::environment::EnvironmentMap;
 use crate::error::SkyRendererError;
 use crate::fog;
@@ -78,12 +79,15 @@ impl SkyPasses {
     /// Makes the pipelines for targets of a format: linear, and blendable, such as `Rgba16Float`.
     ///
     /// # Errors
-    /// [`SkyRendererError::Format`] for a target that cannot be blended.
+    /// [`SkyRendererError::Format`] for a target that cannot be blended, and [`SkyRendererError::DeviceLost`].
     pub fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         target_format: wgpu::TextureFormat,
     ) -> Result<Self, SkyRendererError> {
+        if is_device_lost(device) {
+            return Err(SkyRendererError::DeviceLost);
+        }
         let features = target_format.guaranteed_format_features(device.features());
         let blendable = wgpu::TextureFormatFeatureFlags::BLENDABLE;
         if !features.flags.contains(blendable) {
@@ -123,6 +127,27 @@ impl SkyPasses {
             lights: Vec::new(),
             drawn: None,
         })
+    }
+
+    /// These passes on another device, as after a loss of theirs: with the same target, lights and discs, but without tables.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn on_device(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<Self, SkyRendererError> {
+        Ok(Self {
+            has_discs: self.has_discs,
+            lights: self.lights.clone(),
+            ..Self::new(device, queue, self.target_format)?
+        })
+    }
+
+    /// The device that draws.
+    pub(crate) fn device(&self) -> &wgpu::Device {
+        &self.device
     }
 
     /// Uploads tables, with which frames are drawn from now on.

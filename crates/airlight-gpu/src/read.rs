@@ -1,5 +1,6 @@
 //! Pixels of textures, read back from the device.
 
+use crate::device_loss::is_device_lost;
 use half::f16;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -55,10 +56,14 @@ impl PendingPixels {
         let has_arrived = Arc::new(AtomicBool::new(false));
         let arrived = has_arrived.clone();
         // A failure shows when the range is taken.
-        buffer.slice(..).map_async(wgpu::MapMode::Read, move |_| {
+        let arrive = move |_| {
             arrived.store(true, Ordering::Relaxed);
             wake();
-        });
+        };
+        match is_device_lost(device) {
+            true => arrive(Err(wgpu::BufferAsyncError)),
+            false => buffer.slice(..).map_async(wgpu::MapMode::Read, arrive),
+        }
         Self {
             buffer,
             format,

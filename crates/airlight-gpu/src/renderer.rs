@@ -1,6 +1,7 @@
 //! [`SkyRenderer`].
 
 use crate::camera::Camera;
+use crate::device_loss::is_device_lost;
 use crate::environment::EnvironmentMap;
 use crate::error::SkyRendererError;
 use crate::fog::Fog;
@@ -101,18 +102,57 @@ impl SkyRenderer {
         })
     }
 
+    /// Draws on another device from now on, as after a loss of the one before, with the same air, lights and discs, and with tables for the
+    /// same eye and sun, which it fills again. What else is on a device, such as a [`TerrainPass`](crate::TerrainPass), a
+    /// [`TonePass`](crate::TonePass) or an [`EnvironmentMap`], is made again by its own constructor.
+    ///
+    /// # Errors
+    /// As [`Self::new`] and [`Self::update`]. The renderer is as before then.
+    pub fn recreate(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<(), SkyRendererError> {
+        let mut passes = self.passes.on_device(device, queue)?;
+        if let Some(place) = &self.drawn {
+            passes.set_tables(&self.fill(place)()?);
+            self.work.tables += 1;
+        }
+        self.passes = passes;
+        Ok(())
+    }
+
+    /// Draws other air from the next update on, which it solves for with the same settings: a second or more. Until then, frames are drawn
+    /// with the last tables.
+    ///
+    /// # Errors
+    /// [`SkyRendererError`] if the sky cannot be solved.
+    pub fn set_atmosphere(&mut self, atmosphere: &Atmosphere) -> Result<(), SkyRendererError> {
+        self.set_solver(self.solver.in_atmosphere(atmosphere)?);
+        Ok(())
+    }
+
+    /// As [`Self::set_atmosphere`], with what another thread has solved: see [`SkySolver::in_atmosphere`] of [`Self::solver`].
+    pub fn set_solver(&mut self, solver: SkySolver) {
+        self.solver = solver;
+        self.drawn = None;
+        // Its tables hold the air before.
+        self.filling = None;
+    }
+
     /// Sets the height of the eye above sea level, m, and the sun, by its direction or with its distance, or another source in its
     /// place. Fills the tables if any of these has changed, or the second source, or the fog.
     ///
     /// # Errors
-    /// [`SkyRendererError`] for numbers that are no place or direction, and for a place that the sky is not prepared for and cannot be
-    /// solved for.
+    /// [`SkyRendererError`] for numbers that are no place or direction, for a place that the sky is not prepared for and cannot be
+    /// solved for, and [`SkyRendererError::DeviceLost`], after which [`Self::recreate`] goes on with another device.
     pub fn update(
         &mut self,
         height_m: f64,
         sun: impl Into<LightSource>,
     ) -> Result<(), SkyRendererError> {
         let place = self.place(height_m, sun.into())?;
+        self.check_device()?;
         if !self.is_drawn(&place) {
             let tables = self.fill(&place)()?;
             self.show(&tables, place);
@@ -181,6 +221,7 @@ impl SkyRenderer {
         sun: impl Into<LightSource>,
     ) -> Result<bool, SkyRendererError> {
         let place = self.place(height_m, sun.into())?;
+        self.check_device()?;
         if let Some((thread, filled_for)) = self.filling.take_if(|(t, _)| t.is_finished()) {
             let tables = thread.join().unwrap_or_else(|panic| resume_unwind(panic))?;
             self.show(&tables, filled_for);
@@ -192,6 +233,13 @@ impl SkyRenderer {
             }
         }
         Ok(self.is_drawn(&place))
+    }
+
+    fn check_device(&self) -> Result<(), SkyRendererError> {
+        match is_device_lost(self.passes.device()) {
+            true => Err(SkyRendererError::DeviceLost),
+            false => Ok(()),
+        }
     }
 
     fn place(&self, height_m: f64, first: LightSource) -> Result<Place, SkyRendererError> {
@@ -258,7 +306,7 @@ impl SkyRenderer {
     ) {
         let passes = &self.passes;
         passes.record_shadowed(encoder, target, depth, camera, shadows);
-        self.work.frames += u64::from(self.drawn.is_some());
+        self.work.frames += u64::from(self.lighting().is_some());
     }
 
     /// A map of light from all directions, with faces of `side` texels on a side: a power of two from 8 to 2048.
@@ -288,6 +336,11 @@ impl SkyRenderer {
     /// The solved sky.
     pub fn sky(&self) -> &Sky {
         self.solver.sky()
+    }
+
+    /// What fills the tables. Cloning is cheap, so that a thread can solve for other air with its settings.
+    pub fn solver(&self) -> &SkySolver {
+        &self.solver
     }
 }
 

@@ -1,6 +1,7 @@
 //! Frames of a device against the library. The crate `airlight-validation` compares whole skies.
 
 mod cube;
+mod device_loss;
 mod fog_in_air;
 mod planets;
 mod shadows;
