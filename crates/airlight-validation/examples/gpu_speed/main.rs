@@ -1,6 +1,6 @@
 //! Times of `airlight-gpu` and of Hillaire 2020 on one graphics device, pass by pass:
-//! `cargo run --release -p airlight-validation --features gpu --example gpu_speed -- [--sizes 1280x720,1920x1080] [--frames 20] [--json]
-//! [--pictures FOLDER]`.
+//! `cargo run --release -p airlight-validation --features gpu --example gpu_speed -- [--sizes 1280x720,1920x1080] [--frames 20] [--no-fog]
+//! [--json] [--pictures FOLDER]`.
 //!
 //! The scene: mountains below an evening sky in the air of the paper, with fog in the valleys and lights in it as passes of their own. Both
 //! draw over the same frame, in turns. Passes are timed by time stamps of the device where these can be trusted.
@@ -11,7 +11,6 @@ mod scene;
 mod stopwatch;
 
 use airlight_gpu::SkyPasses;
-use airlight_validation::frames::hillaire2020::HillairePasses;
 use options::Options;
 use report::{Event, Pass, Report, SizeReport};
 use scene::{Frame, Scene};
@@ -45,7 +44,7 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
         if let Some(folder) = options.pictures.as_ref().filter(|_| index == 0) {
             scene.write_pictures(&frame, folder)?;
         }
-        sizes.push(measure(&watch, &scene, &frame, options.frames)?);
+        sizes.push(measure(&watch, &scene, &frame, options)?);
     }
     let report = Report {
         adapter: watch.adapter.clone(),
@@ -62,103 +61,147 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The time of a pass in each round, ms.
-type Times = Vec<f64>;
+/// Times of the passes of a round, ms.
+struct Round {
+    /// Our tables for a sun, on the processor.
+    tables: f64,
+    /// Our passes over the frame: air, and what fog and lights take besides.
+    air: f64,
+    fog: Option<f64>,
+    lights: Option<f64>,
+    /// Tables of Hillaire 2020, and its pass over the frame.
+    transmittance: f64,
+    multiple_scattering: f64,
+    sky_view: f64,
+    aerial_perspective: f64,
+    compose: f64,
+}
 
 /// Times all passes over frames of one size, in turns.
 fn measure(
     watch: &Stopwatch,
     scene: &Scene,
     frame: &Frame,
-    frames: usize,
+    options: &Options,
 ) -> Result<SizeReport, Box<dyn Error>> {
     let hillaire = &scene.hillaire;
     scene.set_hillaire_view(frame)?;
-    let ours = |passes: &SkyPasses| {
-        frame.restore(&watch.device, &watch.queue);
-        watch.time(|encoder| passes.record(encoder, &frame.target, &frame.depth, &frame.camera))
-    };
-    let theirs = |record: &dyn Fn(&HillairePasses, &mut wgpu::CommandEncoder)| {
-        frame.restore(&watch.device, &watch.queue);
-        watch.time(|encoder| record(hillaire, encoder))
-    };
     // Tables are filled before the passes that read them.
     watch.time(|encoder| hillaire.record_tables(encoder))?;
     watch.check(|encoder| hillaire.record_multiple_scattering(encoder))?;
-    let mut times: [Times; NAMES.len()] = Default::default();
-    // The first rounds warm the device up.
-    for round in 0..frames + 2 {
-        let measured = [
-            scene.time_tables(watch)?,
-            ours(&scene.clear)?,
-            ours(&scene.foggy)?,
-            ours(&scene.lit)?,
-            theirs(&|passes, encoder| passes.record_transmittance(encoder))?,
-            theirs(&|passes, encoder| passes.record_multiple_scattering(encoder))?,
-            theirs(&|passes, encoder| passes.record_sky_view(encoder))?,
-            theirs(&|passes, encoder| passes.record_aerial_perspective(encoder))?,
-            theirs(&|passes, encoder| passes.record(encoder, &frame.target, &frame.depth))?,
-        ];
-        if round >= 2 {
-            times
-                .iter_mut()
-                .zip(measured)
-                .for_each(|(all, ms)| all.push(ms));
-        }
+    let mut rounds = Vec::new();
+    for _ in 0..options.frames + WARM_UP {
+        rounds.push(round(watch, scene, frame, options.fog)?);
     }
-    let [tables, clear, foggy, lit, .., sky_view, aerial, compose] = &times;
-    let sum = |parts: &[&Times]| -> Times {
-        (0..frames)
-            .map(|round| parts.iter().map(|part| part[round]).sum())
-            .collect()
-    };
-    let event = |name: &str, ours: &[&Times], theirs: &[&Times]| {
-        let (ours, theirs) = (sum(ours), sum(theirs));
-        let ratios = ours.iter().zip(&theirs).map(|(a, b)| a / b).collect();
-        Event {
-            name: name.to_owned(),
-            ours_ms: median(ours),
-            hillaire_ms: median(theirs),
-            ratio: median(ratios),
-        }
-    };
-    let difference =
-        |more: &Times, less: &Times| more.iter().zip(less).map(|(a, b)| a - b).collect();
-    let mut passes: Vec<Pass> = NAMES
-        .iter()
-        .zip(&times)
-        .map(|(&name, times)| Pass {
-            name: name.to_owned(),
-            ms: median(times.clone()),
-        })
-        .collect();
-    for (index, more, less) in [(3, lit, foggy), (2, foggy, clear)] {
-        passes[index].ms = median(difference(more, less));
-    }
+    rounds.drain(..WARM_UP);
     Ok(SizeReport {
         size: frame.size,
-        events: vec![
-            event("the camera turns", &[clear], &[aerial, compose]),
-            event("the camera moves", &[clear], &[sky_view, aerial, compose]),
-            event(
-                "the sun moves",
-                &[tables, clear],
-                &[sky_view, aerial, compose],
-            ),
-        ],
-        passes,
+        passes: passes(&rounds),
+        events: events(&rounds),
     })
 }
 
-/// The passes, in the order in which they are timed.
-const NAMES: [&str; 9] = [
-    "airlight-gpu: tables for a sun, on the processor",
-    "airlight-gpu: sky and aerial perspective over the frame",
-    "airlight-gpu: fog over the frame",
-    "airlight-gpu: eight lights in fog over the frame",
-    "Hillaire 2020: transmittance",
-    "Hillaire 2020: multiple scattering",
-    "Hillaire 2020: sky view",
-    "Hillaire 2020: aerial perspective",
-    "Hillaire 2020: sky and aerial perspective over the frame",
-];
+/// Rounds that only warm the device up.
+const WARM_UP: usize = 2;
+
+fn round(
+    watch: &Stopwatch,
+    scene: &Scene,
+    frame: &Frame,
+    has_fog: bool,
+) -> Result<Round, Box<dyn Error>> {
+    let time = |record: &dyn Fn(&mut wgpu::CommandEncoder)| {
+        frame.restore(&watch.device, &watch.queue);
+        watch.time(record)
+    };
+    let ours = |passes: &SkyPasses| {
+        time(&|encoder| passes.record(encoder, &frame.target, &frame.depth, &frame.camera))
+    };
+    let hillaire = &scene.hillaire;
+    let air = ours(&scene.clear)?;
+    let (fog, lights) = match has_fog {
+        true => {
+            let (foggy, lit) = (ours(&scene.foggy)?, ours(&scene.lit)?);
+            (Some(foggy - air), Some(lit - foggy))
+        }
+        false => (None, None),
+    };
+    Ok(Round {
+        tables: scene.time_tables(watch)?,
+        air,
+        fog,
+        lights,
+        transmittance: time(&|encoder| hillaire.record_transmittance(encoder))?,
+        multiple_scattering: time(&|encoder| hillaire.record_multiple_scattering(encoder))?,
+        sky_view: time(&|encoder| hillaire.record_sky_view(encoder))?,
+        aerial_perspective: time(&|encoder| hillaire.record_aerial_perspective(encoder))?,
+        compose: time(&|encoder| hillaire.record(encoder, &frame.target, &frame.depth))?,
+    })
+}
+
+/// What of a round is reported.
+type Of<T> = fn(&Round) -> T;
+
+fn passes(rounds: &[Round]) -> Vec<Pass> {
+    let all: [(&str, Of<Option<f64>>); 9] = [
+        ("airlight-gpu: tables for a sun, on the processor", |r| {
+            Some(r.tables)
+        }),
+        (
+            "airlight-gpu: sky and aerial perspective over the frame",
+            |r| Some(r.air),
+        ),
+        ("airlight-gpu: fog over the frame", |r| r.fog),
+        ("airlight-gpu: eight lights in fog over the frame", |r| {
+            r.lights
+        }),
+        ("Hillaire 2020: transmittance", |r| Some(r.transmittance)),
+        ("Hillaire 2020: multiple scattering", |r| {
+            Some(r.multiple_scattering)
+        }),
+        ("Hillaire 2020: sky view", |r| Some(r.sky_view)),
+        ("Hillaire 2020: aerial perspective", |r| {
+            Some(r.aerial_perspective)
+        }),
+        (
+            "Hillaire 2020: sky and aerial perspective over the frame",
+            |r| Some(r.compose),
+        ),
+    ];
+    let pass = |(name, of): (&str, Of<Option<f64>>)| {
+        let times: Option<Vec<f64>> = rounds.iter().map(of).collect();
+        times.map(|times| Pass {
+            name: name.to_owned(),
+            ms: median(times),
+        })
+    };
+    all.into_iter().filter_map(pass).collect()
+}
+
+/// What each renderer does after a change: ours fills no tables unless the sun moves.
+fn events(rounds: &[Round]) -> Vec<Event> {
+    let all: [(&str, Of<[f64; 2]>); 3] = [
+        ("the camera turns", |r| {
+            [r.air, r.aerial_perspective + r.compose]
+        }),
+        ("the camera moves", |r| {
+            [r.air, r.sky_view + r.aerial_perspective + r.compose]
+        }),
+        ("the sun moves", |r| {
+            let hillaire = r.sky_view + r.aerial_perspective + r.compose;
+            [r.tables + r.air, hillaire]
+        }),
+    ];
+    let event = |(name, of): (&str, Of<[f64; 2]>)| {
+        let of_rounds = |part: &dyn Fn([f64; 2]) -> f64| {
+            median(rounds.iter().map(|round| part(of(round))).collect())
+        };
+        Event {
+            name: name.to_owned(),
+            ours_ms: of_rounds(&|[ours, _]| ours),
+            hillaire_ms: of_rounds(&|[_, hillaire]| hillaire),
+            ratio: of_rounds(&|[ours, hillaire]| ours / hillaire),
+        }
+    };
+    all.into_iter().map(event).collect()
+}

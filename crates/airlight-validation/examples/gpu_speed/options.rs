@@ -10,6 +10,7 @@ Usage: gpu_speed [OPTIONS]
 Options:
   --sizes WxH,..     Sizes of the frames [1280x720,1920x1080,3840x2160]
   --frames N         Rounds of which medians are taken, 1 to 10000 [20]
+  --no-fog           Leave out fog and lights, which take long on the processor
   --json             Print JSON
   --pictures FOLDER  Write the frames of both, of the first size, as PNG
   -h, --help         Print this help";
@@ -21,6 +22,8 @@ pub struct Options {
     pub sizes: Vec<[u32; 2]>,
     /// Rounds.
     pub frames: usize,
+    /// Whether fog and lights are timed, too.
+    pub fog: bool,
     /// Whether JSON is printed.
     pub json: bool,
     /// Folder for pictures.
@@ -33,6 +36,7 @@ impl Options {
         let mut options = Self {
             sizes: vec![[1280, 720], [1920, 1080], [3840, 2160]],
             frames: 20,
+            fog: true,
             json: false,
             pictures: None,
         };
@@ -44,6 +48,7 @@ impl Options {
             };
             match argument.as_str() {
                 "-h" | "--help" => return Ok(None),
+                "--no-fog" => options.fog = false,
                 "--json" => options.json = true,
                 "--pictures" => options.pictures = Some(value()?.into()),
                 "--frames" => options.frames = frames(&value()?)?,
@@ -52,7 +57,7 @@ impl Options {
                 }
                 _ => {
                     return Err(format!(
-                        "expected --sizes, --frames, --json or --pictures, got '{argument}'; try --help"
+                        "expected --sizes, --frames, --no-fog, --json or --pictures, got '{argument}'; try --help"
                     ));
                 }
             }

@@ -204,6 +204,6 @@ fn what_hillaire_cannot_draw_is_refused() {
 
 /// As the book states them, for the sizes of the paper.
 #[test]
-fn hillaire_evaluates_the_medium_in_so_many_places() {
+fn hillaire_evaluates_the_medium_as_often_as_stated() {
     assert_eq!(HillairePasses::medium_evaluations(), [600_000, 1_081_344]);
 }
