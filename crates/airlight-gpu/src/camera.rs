@@ -129,3 +129,76 @@ fn turn([right, up, forward]: [DVec3; 3]) -> Mat4 {
     let column = |axis: DVec3| axis.as_vec3().extend(0.0);
     Mat4::from_cols(column(right), column(up), column(forward), glam::Vec4::ZERO)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    /// A frame of 90 degrees to the north, as wide as high, with reversed depth.
+    fn camera() -> Camera {
+        let view = glam::camera::rh::view::look_to_mat4(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y);
+        let projection = Mat4::from_cols_array_2d(&[
+            [1.0, 0.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0, -1.0],
+            [0.0, 0.0, 0.1, 0.0],
+        ]);
+        Camera {
+            projection: Projection::Perspective {
+                world_from_clip: (projection * view).inverse(),
+                far_depth: 0.0,
+            },
+            exposure: 1.0,
+        }
+    }
+
+    #[test]
+    fn rectangles_hold_what_sees_a_disc() {
+        const SIDE: u32 = 400;
+        const RADIUS: f64 = 0.02;
+        let direction = |x: u32, y: u32| {
+            let place = |p: u32| 2.0 * (f64::from(p) + 0.5) / f64::from(SIDE) - 1.0;
+            DVec3::new(place(x), -place(y), -1.0).normalize()
+        };
+        for (azimuth, elevation) in [
+            (0.0, 0.0),
+            (20.0, -10.0),
+            (44.9, 0.0),
+            (-45.5, 3.0),
+            (0.0, 45.7),
+            (-44.0, -34.0),
+            (46.0, 0.0),
+            (60.0, 0.0),
+            (89.5, 0.0),
+            (91.5, 0.0),
+            (180.0, 0.0),
+            (0.0, 90.0),
+        ] {
+            let towards = axes::direction(azimuth, elevation);
+            let rectangle = camera().rectangle([SIDE; 2], towards, RADIUS);
+            let holds = |x: u32, y: u32| {
+                rectangle.is_some_and(|[left, top, width, height]| {
+                    (left..left + width).contains(&x) && (top..top + height).contains(&y)
+                })
+            };
+            let pixels = (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y)));
+            let sees = |&(x, y): &(u32, u32)| direction(x, y).angle_between(towards) < RADIUS;
+            let seen: Vec<_> = pixels.filter(sees).collect();
+            assert!(
+                seen.iter().all(|&(x, y)| holds(x, y)),
+                "{azimuth} {elevation}"
+            );
+            let area = rectangle.map_or(0, |[left, top, width, height]| {
+                assert!(left + width <= SIDE && top + height <= SIDE);
+                width * height
+            });
+            // Only beside the plane of the eye is it the whole frame.
+            let beside = (azimuth.abs() - 90.0).abs() < 1.2 || elevation == 90.0;
+            assert!(area < 800 || beside, "{azimuth} {elevation}: {rectangle:?}");
+            if azimuth == 180.0 || azimuth == 60.0 {
+                assert_eq!(rectangle, None);
+            }
+        }
+    }
+}
