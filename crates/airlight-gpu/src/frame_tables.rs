@@ -12,10 +12,11 @@ use airlight::spectrum::RgbSpace;
 use airlight_shaders::twins::colour::rgb_from_spectrum;
 use airlight_shaders::{ColourFit, SingleScatteringTable, SkyTables, wavelength_grid};
 use glam::{Vec3, Vec4};
-use std::sync::Arc;
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// A solved sky that fills the tables of frames. It needs no device, so that a thread or a worker of a web page can hold it. Cloning is
-/// cheap.
+/// cheap. It keeps the tables of the last two sources, so that those of a moon are not filled again when only the sun has moved.
 #[derive(Clone, Debug)]
 pub struct SkySolver {
     sky: Sky,
@@ -24,7 +25,22 @@ pub struct SkySolver {
     settings: SkySettings,
     fit: Arc<ColourFit>,
     space: RgbSpace,
+    kept: Arc<Mutex<Kept>>,
 }
+
+/// The tables of the last sources, the latest last.
+type Kept = VecDeque<(LitPlace, Arc<(SourceTables, Lighting)>)>;
+
+/// What the tables of a source depend on.
+#[derive(Clone, Debug, PartialEq)]
+struct LitPlace {
+    height_m: f64,
+    source: LightSource,
+    fog: Option<Fog>,
+}
+
+/// Number of sources whose tables are kept.
+const MOST_KEPT: usize = 2;
 
 /// Tables of a frame for one eye: plain data, which [`SkyPasses`](crate::SkyPasses) uploads.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,6 +82,7 @@ impl SkySolver {
             settings: settings.clone(),
             fit: Arc::new(ColourFit::new(atmosphere, settings.suns)?),
             space,
+            kept: Arc::default(),
         })
     }
 
@@ -93,6 +110,7 @@ impl SkySolver {
         let single = Sky::prepare(self.sky.atmosphere(), &wavelength_grid(), &settings)?;
         Ok(Self {
             single: Some(single),
+            kept: Arc::default(),
             ..self
         })
     }
@@ -109,11 +127,12 @@ impl SkySolver {
         source: impl Into<LightSource>,
         fog: Option<&Fog>,
     ) -> Result<FrameTables, SkyRendererError> {
-        let (first, lighting) = self.lit_by(height_m, source.into(), fog)?;
+        let first = self.lit_by(height_m, source.into(), fog)?;
+        let (first, lighting) = &*first;
         Ok(FrameTables {
-            first,
+            first: first.clone(),
             second: None,
-            lighting,
+            lighting: *lighting,
         })
     }
 
@@ -129,16 +148,51 @@ impl SkySolver {
         fog: Option<&Fog>,
     ) -> Result<FrameTables, SkyRendererError> {
         let [first, second] = sources.map(|source| self.lit_by(height_m, source, fog));
-        let ((first, lighting), (second, more)) = (first?, second?);
+        let (first, second) = (first?, second?);
+        let ((first, lighting), (second, more)) = (&*first, &*second);
         Ok(FrameTables {
-            first,
-            second: Some(second),
-            lighting: lighting.with(&more),
+            first: first.clone(),
+            second: Some(second.clone()),
+            lighting: lighting.with(more),
         })
     }
 
-    /// Tables of the light of a source, and its light at the eye.
+    /// Tables of the light of a source, and its light at the eye: those that are kept, or else filled.
     fn lit_by(
+        &self,
+        height_m: f64,
+        source: LightSource,
+        fog: Option<&Fog>,
+    ) -> Result<Arc<(SourceTables, Lighting)>, SkyRendererError> {
+        let place = LitPlace {
+            height_m,
+            source,
+            fog: fog.cloned(),
+        };
+        // A panic of another thread has left whole tables behind.
+        let kept = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let keep = |lit: &Arc<(SourceTables, Lighting)>| {
+            let mut kept = kept();
+            kept.retain(|(of, _)| *of != place);
+            if kept.len() == MOST_KEPT {
+                kept.pop_front();
+            }
+            kept.push_back((place.clone(), lit.clone()));
+        };
+        let found = kept()
+            .iter()
+            .find(|(of, _)| *of == place)
+            .map(|(_, lit)| lit.clone());
+        let lit = match found {
+            Some(lit) => lit,
+            None => Arc::new(self.fill(height_m, source, fog)?),
+        };
+        keep(&lit);
+        Ok(lit)
+    }
+
+    /// Fills the tables of the light of a source, and its light at the eye.
+    fn fill(
         &self,
         height_m: f64,
         source: LightSource,

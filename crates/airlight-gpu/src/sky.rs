@@ -54,6 +54,14 @@ fn numbers(source: &SourceTables, scales: SkyScales) -> Vec<f32> {
         tables.view.air_height_m,
         tables.view.horizon_rad,
         tables.view.highest_rad,
+        tables.view.kink_rad,
+        tables.view.kink_place,
+        tables.view.dense_share,
+        tables.view.dense_azimuth,
+        tables.view.dense_width,
+        0.0,
+        0.0,
+        0.0,
     ]);
     all.extend(scales.smooth_light.to_array());
     all.extend(scales.haze.to_array());

@@ -4,7 +4,7 @@ use crate::wavelengths::{WAVELENGTHS_NM, wavelength_grid};
 use airlight::atmosphere::Atmosphere;
 use airlight::glam::DVec3;
 use airlight::sky::{
-    Directions, LineOfSight, OrderSettings, Sky, SkyError, SkySettings, SunCoverage, View,
+    Directions, OrderSettings, RowRay, Sky, SkyError, SkySettings, SunCoverage, View,
 };
 use airlight::spectrum::{RgbSpace, WavelengthGrid, difference, rgb};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -34,8 +34,8 @@ const AZIMUTHS: [f64; 5] = [0.05, 0.2, 0.45, 0.7, 1.0];
 /// Elevations above and below the horizon, as parts of the way to the zenith or the limb, and to the nadir.
 const ABOVE: [f64; 6] = [0.005, 0.03, 0.1, 0.3, 0.6, 0.95];
 const BELOW: [f64; 4] = [-0.01, -0.05, -0.2, -0.7];
-/// Lengths of the view rays, m: whole ones, and those of aerial perspective.
-const LENGTHS_M: [Option<f64>; 2] = [None, Some(1e4)];
+/// Lengths of the view rays, m: those of aerial perspective, and whole ones.
+const LENGTHS_M: [f64; 2] = [1e4, f64::INFINITY];
 /// Wavelengths between which the ratio to the coarse solution is interpolated, nm; it is constant beyond.
 const RATIO_RANGE_NM: [f64; 2] = [390.0, 730.0];
 /// Heights on the sun's disc, relative to its radius.
@@ -103,7 +103,7 @@ impl ColourFit {
         Ok(rgb::apply(&space.from_xyz_matrix(), xyz))
     }
 
-    /// The weights of a view: least squares over its light and transmittances, from the eye to the end of rays and to points nearby.
+    /// The weights of a view: least squares over the light of its rays and of the air in front of points nearby, and their transmittances.
     pub(crate) fn xyz_weights(&self, view: &View) -> Result<XyzWeights, SkyError> {
         let few = under_source_of(&self.few, view)?;
         let many = under_source_of(&self.many, view)?;
@@ -117,16 +117,27 @@ impl ColourFit {
         };
         let mut samples = Vec::new();
         let mut dimmed = Vec::new();
-        for direction in directions(view) {
-            for length_m in LENGTHS_M {
-                let [all, few, many] =
-                    [view, &few, &many].map(|view| (view, view.along(direction, length_m)));
-                let transmittance = all.1.transmittance.iter().map(|t| f64::from(*t));
-                let transmittance: Vec<f64> = transmittance.collect();
-                let of_many = many.1.transmittance.iter().map(|t| f64::from(*t));
-                dimmed.push((four(&transmittance), lit(&mut of_many.into_iter())));
-                let [all, few, many] = [all, few, many].map(|(view, light)| response(view, &light));
-                samples.push((four(&all), lit(&mut filled(&all, &few, &many, grid))));
+        for row in rows(view) {
+            let rays = [view, &few, &many].map(|view| view.along_row(&row, &LENGTHS_M));
+            for index in 0..row.len() {
+                let [all, few_ray, many_ray] =
+                    [&rays[0], &rays[1], &rays[2]].map(|row| &row[index]);
+                for (all, many) in all.paths.iter().zip(&many_ray.paths) {
+                    let [all, many] = [all, many].map(|path| {
+                        let values = path.transmittance.iter();
+                        values.map(|t| f64::from(*t)).collect::<Vec<_>>()
+                    });
+                    dimmed.push((four(&all), lit(&mut many.into_iter())));
+                }
+                let light =
+                    |ray: &RowRay| [ray.paths[0].path_radiance.clone(), ray.radiance.clone()];
+                let [all, few_light, many_light] = [all, few_ray, many_ray].map(light);
+                for k in 0..LENGTHS_M.len() {
+                    let all = response(view, &all[k]);
+                    let few = response(&few, &few_light[k]);
+                    let many = response(&many, &many_light[k]);
+                    samples.push((four(&all), lit(&mut filled(&all, &few, &many, grid))));
+                }
             }
         }
         let sun = view.sun();
@@ -160,9 +171,9 @@ fn four(values: &[f64]) -> [f64; 4] {
     std::array::from_fn(|k| values[k])
 }
 
-/// Radiance of a ray with its ground, per solar irradiance.
-fn response(view: &View, light: &LineOfSight) -> Vec<f64> {
-    let (solar, radiance) = (view.solar_irradiance(), light.radiance());
+/// Radiance per solar irradiance.
+fn response(view: &View, radiance: &[f32]) -> Vec<f64> {
+    let solar = view.solar_irradiance();
     let ratio = |(l, e): (&f32, &f32)| f64::from(*l) / f64::from(*e).max(f64::MIN_POSITIVE);
     radiance.iter().zip(&solar).map(ratio).collect()
 }
@@ -198,23 +209,19 @@ fn interpolated(values: [f64; 4], nm: f64) -> f64 {
     (0..4).map(term).sum()
 }
 
-/// Directions over the part of a view in which there is air.
-fn directions(view: &View) -> impl Iterator<Item = DVec3> {
-    let (_, top_radius_m) = view.bounds_m();
-    let horizon = view.horizon_elevation_rad();
-    let highest = match view.radius_m() >= top_radius_m {
-        true => -(top_radius_m / view.radius_m()).acos(),
-        false => FRAC_PI_2,
-    };
+/// Directions over the part of a view in which there is air, by elevation.
+fn rows(view: &View) -> impl Iterator<Item = [DVec3; AZIMUTHS.len()]> {
+    let coordinates = view.table_coordinates();
+    let (horizon, highest) = (coordinates.horizon_rad, coordinates.highest_rad);
     let sun = view.sun();
     let towards = DVec3::new(sun.x, 0.0, sun.z).normalize_or(DVec3::X);
     let across = DVec3::new(-towards.z, 0.0, towards.x);
-    AZIMUTHS.into_iter().flat_map(move |azimuth| {
-        let (sin, cos) = (PI * azimuth).sin_cos();
-        let level = towards * cos + across * sin;
-        ABOVE.into_iter().chain(BELOW).map(move |part| {
-            let end = if part > 0.0 { highest } else { -FRAC_PI_2 };
-            let elevation = horizon + (end - horizon) * part.abs();
+    ABOVE.into_iter().chain(BELOW).map(move |part| {
+        let end = if part > 0.0 { highest } else { -FRAC_PI_2 };
+        let elevation = horizon + (end - horizon) * part.abs();
+        AZIMUTHS.map(|azimuth| {
+            let (sin, cos) = (PI * azimuth).sin_cos();
+            let level = towards * cos + across * sin;
             level * elevation.cos() + DVec3::Y * elevation.sin()
         })
     })
@@ -320,9 +327,9 @@ mod tests {
             let [few, many] = [&fit.few, &fit.many].map(|sky| under_source_of(sky, &view).unwrap());
             let along = |direction| {
                 [&view, &few, &many, &right]
-                    .map(|view| response(view, &view.along(direction, None)))
+                    .map(|view| response(view, &view.along(direction, None).radiance()))
             };
-            let all: Vec<[Vec<f64>; 4]> = directions(&view).map(along).collect();
+            let all: Vec<[Vec<f64>; 4]> = rows(&view).flatten().map(along).collect();
             let solar = right.solar_irradiance();
             let xyz = |response: &mut dyn Iterator<Item = f64>| {
                 let light = response.zip(&solar).map(|(r, e)| r as f32 * e);

@@ -7,17 +7,15 @@ use crate::twins::sky_tables as twin;
 use crate::twins::texture::{LinearSampler, Texture};
 use crate::wavelengths::WAVELENGTHS_NM;
 use airlight::glam::DVec3;
-use airlight::sky::{SkyError, SplitPath, SplitView, View};
+use airlight::sky::{SkyError, SplitPath, SplitView, TableCoordinates, View};
 use airlight::spectrum::{RgbSpace, rgb};
 use glam::{Vec3, Vec4};
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 /// Logarithm of the least light that a table holds, relative to its scale.
 const DARKEST: f64 = -30.0;
 /// First distance of a ray, in steps: means are undefined at the eye itself.
 const FIRST_STEP: f64 = 0.01;
-/// Part of the span of elevations from the horizon to the first rows, as radiance jumps there.
-const BESIDE_HORIZON: f64 = 1e-9;
 
 /// Tables of the sky and of aerial perspective for one height of the eye and one direction of the sun, with the parameters of the
 /// shader functions that read them. Textures may be stored as half floats.
@@ -83,22 +81,20 @@ impl SkyTables {
         }
         let (ground_radius_m, top_radius_m) = view.bounds_m();
         let radius_m = view.radius_m();
-        let highest = match radius_m >= top_radius_m {
-            true => -(top_radius_m / radius_m).acos(),
-            false => FRAC_PI_2,
-        };
-        let place = Eye {
-            horizon: view.horizon_elevation_rad(),
-            highest,
-            sun: view.sun(),
-        };
+        let place = Eye::new(view);
+        let coordinates = &place.coordinates;
         let sky_view = twin::SkyView {
             sun: view.sun().as_vec3(),
             height_m: (radius_m - ground_radius_m) as f32,
             ground_radius_m: ground_radius_m as f32,
             air_height_m: (top_radius_m - ground_radius_m) as f32,
-            horizon_rad: place.horizon as f32,
-            highest_rad: highest as f32,
+            horizon_rad: coordinates.horizon_rad as f32,
+            highest_rad: coordinates.highest_rad as f32,
+            kink_rad: coordinates.kink_rad as f32,
+            kink_place: coordinates.kink_place as f32,
+            dense_share: coordinates.dense_share as f32,
+            dense_azimuth: coordinates.dense_azimuth as f32,
+            dense_width: coordinates.dense_width as f32,
         };
         let sky = sky(split, &place);
         let scales = twin::SkyScales {
@@ -154,7 +150,8 @@ impl SkyTables {
                 twin::SKY_AZIMUTHS,
                 twin::SKY_ROWS_ABOVE + twin::SKY_ROWS_BELOW,
             );
-            let azimuth = twin::place_from_texel_coordinate(uv[0] / azimuths, azimuths);
+            let place = twin::place_from_texel_coordinate(uv[0] / azimuths, azimuths);
+            let azimuth = twin::azimuth_from_column_place(self.view, place);
             let elevation = twin::elevation_from_row_coordinate(
                 self.view,
                 uv[1] / rows,
@@ -209,11 +206,7 @@ impl SingleScatteringTable {
     /// The table of a view of a sky that was solved with [`Scattering::Single`](airlight::sky::Scattering::Single), for the eye and the sun
     /// of `tables`.
     pub fn new(split: &SplitView, tables: &SkyTables) -> Self {
-        let eye = Eye {
-            horizon: split.view().horizon_elevation_rad(),
-            highest: f64::from(tables.view.highest_rad),
-            sun: split.view().sun(),
-        };
+        let eye = Eye::new(split.view());
         let aerial = aerial(split, &eye, &tables.view);
         let scale = scale(&aerial.smooth);
         Self {
@@ -223,24 +216,28 @@ impl SingleScatteringTable {
     }
 }
 
-/// Elevations that bound the tables, rad, and the sun.
+/// Directions of rows and columns.
 struct Eye {
-    horizon: f64,
-    highest: f64,
+    coordinates: TableCoordinates,
     sun: DVec3,
 }
 
 impl Eye {
+    fn new(view: &View) -> Self {
+        Self {
+            coordinates: view.table_coordinates(),
+            sun: view.sun(),
+        }
+    }
+
     /// Elevation of a row, and whether it is below the horizon.
     fn elevation(&self, row: usize, [above, below]: [usize; 2]) -> (f64, bool) {
         let is_below = row >= above;
-        let (end, place) = match is_below {
-            true => (-FRAC_PI_2, (row - above) as f64 / (below - 1) as f64),
-            false => (self.highest, row as f64 / (above - 1) as f64),
+        let place = match is_below {
+            true => (row - above) as f64 / (below - 1) as f64,
+            false => row as f64 / (above - 1) as f64,
         };
-        let power = if is_below { 4 } else { 2 };
-        let part = place.powi(power).max(BESIDE_HORIZON);
-        (self.horizon + (end - self.horizon) * part, is_below)
+        (self.coordinates.elevation_rad(place, is_below), is_below)
     }
 
     /// Unit vector of a column and an elevation.
@@ -251,7 +248,10 @@ impl Eye {
             false => towards.normalize(),
         };
         let across = DVec3::new(-towards.z, 0.0, towards.x);
-        let (sin, cos) = (PI * column as f64 / (columns - 1) as f64).sin_cos();
+        let azimuth = self
+            .coordinates
+            .azimuth(column as f64 / (columns - 1) as f64);
+        let (sin, cos) = (PI * azimuth).sin_cos();
         (towards * cos + across * sin) * elevation.cos() + DVec3::Y * elevation.sin()
     }
 }

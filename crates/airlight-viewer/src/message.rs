@@ -119,7 +119,8 @@ structs! {
         view, scales, sky_smooth, sky_haze, aerial_smooth, aerial_haze, extinction, phase, radiance_weights, transmittance_weights,
         disc_weights
     }
-    SkyView { sun, height_m, ground_radius_m, air_height_m, horizon_rad, highest_rad }
+    SkyView { sun, height_m, ground_radius_m, air_height_m, horizon_rad, highest_rad, kink_rad, kink_place,
+        dense_share, dense_azimuth, dense_width }
     SkyScales { smooth_light, haze }
     RgbWeights { red, green, blue }
     FogFrame { tables, layer, eye_height_m, around_lights }

@@ -82,6 +82,11 @@ struct SkyView {
     float air_height_m;
     float horizon_rad;
     float highest_rad;
+    float kink_rad;
+    float kink_place;
+    float dense_share;
+    float dense_azimuth;
+    float dense_width;
 };
 struct SkyScales {
     vec4 smooth_light;
@@ -127,8 +132,8 @@ const uint LIGHT_SPHERE = 2u;
 const uint LIGHT_NODES = 8u;
 const float LIGHT_CUTOFF = 12.667;
 const float SKY_AZIMUTHS = 64.0;
-const float SKY_ROWS_ABOVE = 128.0;
-const float SKY_ROWS_BELOW = 32.0;
+const float SKY_ROWS_ABOVE = 125.0;
+const float SKY_ROWS_BELOW = 35.0;
 const float AERIAL_AZIMUTHS = 32.0;
 const float AERIAL_ROWS_ABOVE = 32.0;
 const float AERIAL_ROWS_BELOW = 32.0;
@@ -316,25 +321,25 @@ RaySegment ray_part(RaySegment ray_1, float from_m, float to_m) {
 vec2 below_height(RaySegment ray_2, float height_m_1) {
     float first = 0.0;
     float last = 0.0;
-    float above = (ray_2.height_m - height_m_1);
+    float above_1 = (ray_2.height_m - height_m_1);
     if ((ray_2.curvature_per_m > 0.0)) {
-        float discriminant = ((ray_2.sin_elevation * ray_2.sin_elevation) - ((4.0 * ray_2.curvature_per_m) * above));
+        float discriminant = ((ray_2.sin_elevation * ray_2.sin_elevation) - ((4.0 * ray_2.curvature_per_m) * above_1));
         if ((discriminant > 0.0)) {
             float root = sqrt(discriminant);
             float q = (-0.5 * (ray_2.sin_elevation + ((ray_2.sin_elevation >= 0.0) ? root : -(root))));
             float a_2 = (q / ray_2.curvature_per_m);
-            float b_2 = (above / q);
+            float b_2 = (above_1 / q);
             first = min(a_2, b_2);
             last = max(a_2, b_2);
         }
     } else {
         if ((ray_2.sin_elevation == 0.0)) {
-            last = ((above < 0.0) ? ray_2.length_m : 0.0);
+            last = ((above_1 < 0.0) ? ray_2.length_m : 0.0);
         } else {
             if ((ray_2.sin_elevation > 0.0)) {
-                last = (-(above) / ray_2.sin_elevation);
+                last = (-(above_1) / ray_2.sin_elevation);
             } else {
-                first = (above / -(ray_2.sin_elevation));
+                first = (above_1 / -(ray_2.sin_elevation));
                 last = ray_2.length_m;
             }
         }
@@ -1034,10 +1039,10 @@ float airlight_without_extinction(LightRayGeometry geometry_2) {
 vec2 light_gauss_node(uint i_5) {
     float places[4] = float[4](0.019855073, 0.10166676, 0.23723379, 0.40828267);
     float weights[4] = float[4](0.050614268, 0.11119052, 0.15685332, 0.18134189);
-    uint k = min(i_5, (7u - min(i_5, 7u)));
-    float _e19 = places[k];
-    float _e21 = places[k];
-    float _e28 = weights[k];
+    uint k_1 = min(i_5, (7u - min(i_5, 7u)));
+    float _e19 = places[k_1];
+    float _e21 = places[k_1];
+    float _e28 = weights[k_1];
     return vec2(((i_5 > 3u) ? (1.0 - _e21) : _e19), _e28);
 }
 
@@ -1422,8 +1427,8 @@ vec3 light_panel_in_exponential_fog(ExponentialFog fog_4, float eye_height_m_1, 
             float _e151 = forward;
             float t_3 = max((_e150 + (((_e151 * 0.5) * _e147.x) * ((_e147.x + (2.0 * _e119)) / s_1))), 0.0);
             float _e165 = forward;
-            float place_6 = (((_e165 * 0.5) * (s_1 - h_6)) * ((s_1 + h_6) / s_1));
-            vec3 _e173 = light_at(ray_12, place_6);
+            float place_8 = (((_e165 * 0.5) * (s_1 - h_6)) * ((s_1 + h_6) / s_1));
+            vec3 _e173 = light_at(ray_12, place_8);
             float centre_m_1 = ((ray_12.light.kind == LIGHT_SPHERE) ? (_e173.y + ray_12.light.radius_m) : _e173.y);
             float _e185 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_7, t_3, light_height_m_1, centre_m_1, _e173.y);
             float _e192 = decayed((((eye_height_m_1 + (sin_elevation_7 * t_3)) - fog_4.reference_height_m) / fog_4.scale_height_m));
@@ -1699,27 +1704,107 @@ float azimuth_place(vec3 direction_5, vec3 sun) {
     return (atan(across_1, along_2) * 0.31830987);
 }
 
-// Texture coordinate of an elevation in a table with rows above and below the horizon, dense towards it: at the square of the row above, and at its fourth power below, where rays from a low eye soon meet the ground. The first rows hold the elevations from the horizon on; both parts end in texel centres, so that filtering does not mix them.
+// Place from 0 to 1 of an azimuth from the sun, in half turns, among the columns of a table. From space they are dense where the planet's shadow crosses the limb.
 // Cost: no exp.
-float row_coordinate(SkyView view, float elevation_rad, bool is_below, float rows_above, float rows_below) {
-    float end_4 = (is_below ? -1.5707964 : view.highest_rad);
-    float rows = (is_below ? rows_below : rows_above);
-    float part_2 = clamp(((elevation_rad - view.horizon_rad) / (end_4 - view.horizon_rad)), 0.0, 1.0);
-    float place_7 = (is_below ? sqrt(sqrt(part_2)) : sqrt(part_2));
-    float first_2 = (is_below ? rows_above : 0.0);
-    return (((first_2 + 0.5) + (place_7 * (rows - 1.0))) / (rows_above + rows_below));
+float column_place(SkyView view, float azimuth) {
+    if ((view.dense_share == 0.0)) {
+        return azimuth;
+    }
+    vec3 dense = atan(((vec3(azimuth, 0.0, 1.0) - vec3(view.dense_azimuth)) / vec3(view.dense_width)));
+    return mix(azimuth, ((dense.x - dense.y) / (dense.z - dense.y)), view.dense_share);
+}
+
+// Inverse of `column_place`, by bisection.
+// Cost: no exp.
+float azimuth_from_column_place(SkyView view_1, float place_2) {
+    float below = 0.0;
+    float above = 1.0;
+    int k = 0;
+    if ((view_1.dense_share == 0.0)) {
+        return place_2;
+    }
+    bool loop_init_11 = true;
+    while(true) {
+        if (!loop_init_11) {
+            int _e22 = k;
+            k = (_e22 + 1);
+        }
+        loop_init_11 = false;
+        int _e11 = k;
+        if ((_e11 < 24)) {
+        } else {
+            break;
+        }
+        {
+            float _e14 = below;
+            float _e15 = above;
+            float middle_1 = (0.5 * (_e14 + _e15));
+            float _e19 = column_place(view_1, middle_1);
+            if ((_e19 < place_2)) {
+                below = middle_1;
+            } else {
+                above = middle_1;
+            }
+        }
+    }
+    float _e24 = below;
+    float _e25 = above;
+    return (0.5 * (_e24 + _e25));
+}
+
+// Place from 0 to 1 of an elevation among the rows above or below the horizon. Above it they are dense towards the horizon, at the square of the place, and towards the rays that graze a jump of density, from below; below it at the fourth power of the place for a low eye, whose rays soon meet the ground, and the more at its square the farther the horizon dips.
+// Cost: no exp.
+float row_place(SkyView view_2, float elevation_rad, bool is_below) {
+    if (is_below) {
+        float part_2 = ((elevation_rad - view_2.horizon_rad) / (-1.5707964 - view_2.horizon_rad));
+        float root_2 = sqrt(sqrt(clamp(part_2, 0.0, 1.0)));
+        float linear_below = -(sin(view_2.horizon_rad));
+        return (root_2 * ((1.0 - linear_below) + (linear_below * root_2)));
+    }
+    if ((elevation_rad < view_2.kink_rad)) {
+        float part_3 = clamp(((elevation_rad - view_2.horizon_rad) / (view_2.kink_rad - view_2.horizon_rad)), 0.0, 1.0);
+        return ((view_2.kink_place * 0.63661975) * atan(sqrt(part_3), sqrt((1.0 - part_3))));
+    }
+    float part_4 = clamp(((elevation_rad - view_2.kink_rad) / (view_2.highest_rad - view_2.kink_rad)), 0.0, 1.0);
+    return (view_2.kink_place + ((1.0 - view_2.kink_place) * sqrt(part_4)));
+}
+
+// Inverse of `row_place`: elevation of a place, rad.
+// Cost: no exp.
+float elevation_from_row_place(SkyView view_3, float place_3, bool is_below_1) {
+    if (is_below_1) {
+        float linear_below_1 = -(sin(view_3.horizon_rad));
+        float even = (1.0 - linear_below_1);
+        float root_3 = ((2.0 * place_3) / (even + sqrt(((even * even) + ((4.0 * linear_below_1) * place_3)))));
+        float squared = (root_3 * root_3);
+        return (view_3.horizon_rad + (((-1.5707964 - view_3.horizon_rad) * squared) * squared));
+    }
+    if ((place_3 < view_3.kink_place)) {
+        float sine_3 = sin(((1.5707964 * place_3) / view_3.kink_place));
+        return (view_3.horizon_rad + (((view_3.kink_rad - view_3.horizon_rad) * sine_3) * sine_3));
+    }
+    float part_5 = ((place_3 - view_3.kink_place) / (1.0 - view_3.kink_place));
+    return (view_3.kink_rad + (((view_3.highest_rad - view_3.kink_rad) * part_5) * part_5));
+}
+
+// Texture coordinate of an elevation in a table with rows above and below the horizon, at their `row_place`. The first rows hold the elevations from the horizon on; both parts end in texel centres, so that filtering does not mix them.
+// Cost: no exp.
+float row_coordinate(SkyView view_4, float elevation_rad_1, bool is_below_2, float rows_above, float rows_below) {
+    float rows = (is_below_2 ? rows_below : rows_above);
+    float first_2 = (is_below_2 ? rows_above : 0.0);
+    float _e10 = row_place(view_4, elevation_rad_1, is_below_2);
+    return (((first_2 + 0.5) + (_e10 * (rows - 1.0))) / (rows_above + rows_below));
 }
 
 // Inverse of `row_coordinate`: elevation of a texture coordinate, rad.
 // Cost: no exp.
-float elevation_from_row_coordinate(SkyView view_1, float coordinate_1, float rows_above_1, float rows_below_1) {
+float elevation_from_row_coordinate(SkyView view_5, float coordinate_1, float rows_above_1, float rows_below_1) {
     float row_2 = (coordinate_1 * (rows_above_1 + rows_below_1));
-    bool is_below_1 = (row_2 >= rows_above_1);
-    float end_5 = (is_below_1 ? -1.5707964 : view_1.highest_rad);
-    float rows_1 = (is_below_1 ? rows_below_1 : rows_above_1);
-    float place_8 = (((row_2 - (is_below_1 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0));
-    float squared = (place_8 * place_8);
-    return (view_1.horizon_rad + ((end_5 - view_1.horizon_rad) * (is_below_1 ? (squared * squared) : squared)));
+    bool is_below_3 = (row_2 >= rows_above_1);
+    float rows_1 = (is_below_3 ? rows_below_1 : rows_above_1);
+    float place_9 = (((row_2 - (is_below_3 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0));
+    float _e16 = elevation_from_row_place(view_5, place_9, is_below_3);
+    return _e16;
 }
 
 // Elevation of a direction, rad.
@@ -1730,40 +1815,41 @@ float elevation_of(vec3 direction_6) {
 
 // Texture coordinates of a direction in a sky table.
 // Cost: no exp.
-vec2 uv_from_direction(SkyView view_2, vec3 direction_7) {
+vec2 uv_from_direction(SkyView view_6, vec3 direction_7) {
     float _e2 = elevation_of(direction_7);
-    bool is_below_2 = (_e2 < view_2.horizon_rad);
-    float _e6 = azimuth_place(direction_7, view_2.sun);
-    float _e8 = texel_coordinate(_e6, SKY_AZIMUTHS);
-    float _e11 = row_coordinate(view_2, _e2, is_below_2, SKY_ROWS_ABOVE, SKY_ROWS_BELOW);
-    return vec2(_e8, _e11);
+    bool is_below_4 = (_e2 < view_6.horizon_rad);
+    float _e6 = azimuth_place(direction_7, view_6.sun);
+    float _e7 = column_place(view_6, _e6);
+    float _e9 = texel_coordinate(_e7, SKY_AZIMUTHS);
+    float _e12 = row_coordinate(view_6, _e2, is_below_4, SKY_ROWS_ABOVE, SKY_ROWS_BELOW);
+    return vec2(_e9, _e12);
 }
 
 // Unit vector at an azimuth from the sun, as a fraction of half a turn, and an elevation.
 // Cost: no exp.
-vec3 direction_from_azimuth_elevation(SkyView view_3, float azimuth, float elevation_rad_1) {
-    bool is_vertical_1 = ((abs(view_3.sun.x) + abs(view_3.sun.z)) < 1e-9);
-    vec2 towards_1 = normalize((is_vertical_1 ? vec2(1.0, 0.0) : view_3.sun.xz));
-    float along_3 = (cos((azimuth * 3.1415927)) * cos(elevation_rad_1));
-    float across_2 = (sin((azimuth * 3.1415927)) * cos(elevation_rad_1));
-    return vec3(((towards_1.x * along_3) - (towards_1.y * across_2)), sin(elevation_rad_1), ((towards_1.y * along_3) + (towards_1.x * across_2)));
+vec3 direction_from_azimuth_elevation(SkyView view_7, float azimuth_1, float elevation_rad_2) {
+    bool is_vertical_1 = ((abs(view_7.sun.x) + abs(view_7.sun.z)) < 1e-9);
+    vec2 towards_1 = normalize((is_vertical_1 ? vec2(1.0, 0.0) : view_7.sun.xz));
+    float along_3 = (cos((azimuth_1 * 3.1415927)) * cos(elevation_rad_2));
+    float across_2 = (sin((azimuth_1 * 3.1415927)) * cos(elevation_rad_2));
+    return vec3(((towards_1.x * along_3) - (towards_1.y * across_2)), sin(elevation_rad_2), ((towards_1.y * along_3) + (towards_1.x * across_2)));
 }
 
 // Interval of a ray inside the air, m from the eye: up to the ground, if it meets that, or to the top. From space, a ray that misses the air has an empty interval.
 // Cost: no exp.
-vec2 air_span_m(SkyView view_4, float sin_elevation_9, bool meets_ground) {
+vec2 air_span_m(SkyView view_8, float sin_elevation_9, bool meets_ground) {
     float end_1 = 0.0;
-    float b_3 = ((view_4.ground_radius_m + view_4.height_m) * sin_elevation_9);
-    float over_ground = (view_4.height_m * ((2.0 * view_4.ground_radius_m) + view_4.height_m));
-    float over_top = ((view_4.height_m - view_4.air_height_m) * (((2.0 * view_4.ground_radius_m) + view_4.height_m) + view_4.air_height_m));
-    float root_2 = sqrt(max(((b_3 * b_3) - over_top), 0.0));
-    float start_4 = ((over_top > 0.0) ? (over_top / (root_2 - b_3)) : 0.0);
-    end_1 = (root_2 - b_3);
+    float b_3 = ((view_8.ground_radius_m + view_8.height_m) * sin_elevation_9);
+    float over_ground = (view_8.height_m * ((2.0 * view_8.ground_radius_m) + view_8.height_m));
+    float over_top = ((view_8.height_m - view_8.air_height_m) * (((2.0 * view_8.ground_radius_m) + view_8.height_m) + view_8.air_height_m));
+    float root_4 = sqrt(max(((b_3 * b_3) - over_top), 0.0));
+    float start_4 = ((over_top > 0.0) ? (over_top / (root_4 - b_3)) : 0.0);
+    end_1 = (root_4 - b_3);
     if (meets_ground) {
         end_1 = (over_ground / (sqrt(max(((b_3 * b_3) - over_ground), 0.0)) - b_3));
     } else {
         if ((b_3 > 0.0)) {
-            end_1 = (-(over_top) / (root_2 + b_3));
+            end_1 = (-(over_top) / (root_4 + b_3));
         }
     }
     float _e50 = end_1;
@@ -1778,8 +1864,8 @@ float place_from_part(float part) {
 
 // Inverse of `place_from_part`.
 // Cost: no exp.
-float part_from_place(float place_2) {
-    return (place_2 * place_2);
+float part_from_place(float place_4) {
+    return (place_4 * place_4);
 }
 
 // Place from 0 to 1 of a scattering angle in a table of phase functions, dense forwards, by 1 minus the cosine.
@@ -1791,8 +1877,8 @@ float phase_place(float one_minus_cos_6) {
 
 // Inverse of `phase_place`.
 // Cost: no exp.
-float one_minus_cos_from_phase_place(float place_3) {
-    float half_sine = sin(((1.5707964 * place_3) * place_3));
+float one_minus_cos_from_phase_place(float place_5) {
+    float half_sine = sin(((1.5707964 * place_5) * place_5));
     return ((2.0 * half_sine) * half_sine);
 }
 
@@ -1807,13 +1893,13 @@ vec4 haze_phase(highp sampler2D phase_table, float one_minus_cos_7) {
 
 // Radiance of the sky, or of the ground below the horizon, along a direction at four wavelengths, without the sun's disc.
 // Cost: 8 exp, 3 reads.
-vec4 sky_radiance(SkyView view_5, SkyScales scales, highp sampler2D smooth_table, highp sampler2D haze_table, highp sampler2D phase_table_1, vec3 direction_8) {
+vec4 sky_radiance(SkyView view_9, SkyScales scales, highp sampler2D smooth_table, highp sampler2D haze_table, highp sampler2D phase_table_1, vec3 direction_8) {
     float _e7 = elevation_of(direction_8);
-    if ((_e7 > view_5.highest_rad)) {
+    if ((_e7 > view_9.highest_rad)) {
         return vec4(0.0);
     }
-    vec2 _e12 = uv_from_direction(view_5, direction_8);
-    float _e14 = one_minus_cos_between(direction_8, view_5.sun);
+    vec2 _e12 = uv_from_direction(view_9, direction_8);
+    float _e14 = one_minus_cos_between(direction_8, view_9.sun);
     vec4 _e15 = haze_phase(phase_table_1, _e14);
     vec4 _e17 = textureLod(smooth_table, vec2(_e12), 0.0);
     vec4 smooth_light = (exp(_e17) * scales.smooth_light);
@@ -1824,14 +1910,14 @@ vec4 sky_radiance(SkyView view_5, SkyScales scales, highp sampler2D smooth_table
 
 // Air between the eye and a point at a distance along a direction, at four wavelengths. The extinction table holds the mean extinction from the first air on, 1/km.
 // Cost: 12 exp, 4 reads.
-SpectralPath aerial_perspective(SkyView view_6, SkyScales scales_1, highp sampler3D smooth_table_1, highp sampler3D haze_table_1, highp sampler2D extinction_table, highp sampler2D phase_table_2, vec3 direction_9, float distance_m_1) {
+SpectralPath aerial_perspective(SkyView view_10, SkyScales scales_1, highp sampler3D smooth_table_1, highp sampler3D haze_table_1, highp sampler2D extinction_table, highp sampler2D phase_table_2, vec3 direction_9, float distance_m_1) {
     bool local_17 = false;
     float _e9 = elevation_of(direction_9);
-    bool is_below_3 = (_e9 < view_6.horizon_rad);
-    vec2 _e13 = air_span_m(view_6, direction_9.y, is_below_3);
+    bool is_below_5 = (_e9 < view_10.horizon_rad);
+    vec2 _e13 = air_span_m(view_10, direction_9.y, is_below_5);
     float length_m_15 = (min(distance_m_1, _e13.y) - _e13.x);
     if (!((length_m_15 <= 0.0))) {
-        local_17 = (_e9 > view_6.highest_rad);
+        local_17 = (_e9 > view_10.highest_rad);
     } else {
         local_17 = true;
     }
@@ -1840,35 +1926,36 @@ SpectralPath aerial_perspective(SkyView view_6, SkyScales scales_1, highp sample
         return SpectralPath(vec4(1.0), vec4(0.0));
     }
     float _e39 = place_from_part(clamp((length_m_15 / (_e13.y - _e13.x)), 0.0, 1.0));
-    float _e42 = row_coordinate(view_6, _e9, is_below_3, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
-    float _e44 = azimuth_place(direction_9, view_6.sun);
-    float _e46 = texel_coordinate(_e44, AERIAL_AZIMUTHS);
-    float _e48 = texel_coordinate(_e39, AERIAL_DISTANCES);
-    vec3 uvw = vec3(_e46, _e42, _e48);
-    float _e51 = one_minus_cos_between(direction_9, view_6.sun);
-    vec4 _e52 = haze_phase(phase_table_2, _e51);
-    vec4 _e55 = textureLod(extinction_table, vec2(uvw.zy), 0.0);
-    vec4 depth_5 = (_e55 * (length_m_15 * 0.001));
-    vec4 _e60 = textureLod(smooth_table_1, vec3(uvw), 0.0);
-    vec4 smooth_light_1 = (exp(_e60) * scales_1.smooth_light);
-    vec4 _e65 = textureLod(haze_table_1, vec3(uvw), 0.0);
-    vec4 haze_1 = (exp(_e65) * scales_1.haze);
-    vec3 _e70 = mean_transmittance_rgb(depth_5.xyz);
-    float _e72 = mean_transmittance(depth_5.w);
-    vec4 opacity_2 = (depth_5 * vec4(_e70, _e72));
-    return SpectralPath((vec4(1.0) - opacity_2), ((smooth_light_1 + (haze_1 * _e52)) * opacity_2));
+    float _e42 = row_coordinate(view_10, _e9, is_below_5, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    float _e44 = azimuth_place(direction_9, view_10.sun);
+    float _e45 = column_place(view_10, _e44);
+    float _e47 = texel_coordinate(_e45, AERIAL_AZIMUTHS);
+    float _e49 = texel_coordinate(_e39, AERIAL_DISTANCES);
+    vec3 uvw = vec3(_e47, _e42, _e49);
+    float _e52 = one_minus_cos_between(direction_9, view_10.sun);
+    vec4 _e53 = haze_phase(phase_table_2, _e52);
+    vec4 _e56 = textureLod(extinction_table, vec2(uvw.zy), 0.0);
+    vec4 depth_5 = (_e56 * (length_m_15 * 0.001));
+    vec4 _e61 = textureLod(smooth_table_1, vec3(uvw), 0.0);
+    vec4 smooth_light_1 = (exp(_e61) * scales_1.smooth_light);
+    vec4 _e66 = textureLod(haze_table_1, vec3(uvw), 0.0);
+    vec4 haze_1 = (exp(_e66) * scales_1.haze);
+    vec3 _e71 = mean_transmittance_rgb(depth_5.xyz);
+    float _e73 = mean_transmittance(depth_5.w);
+    vec4 opacity_2 = (depth_5 * vec4(_e71, _e73));
+    return SpectralPath((vec4(1.0) - opacity_2), ((smooth_light_1 + (haze_1 * _e53)) * opacity_2));
 }
 
 // Transmittance of the air between the eye and a point at a distance along a direction, at four wavelengths: that of `aerial_perspective` alone.
 // Cost: 4 exp, 1 read.
-vec4 aerial_transmittance(SkyView view_7, highp sampler2D extinction_table_1, vec3 direction_10, float distance_m_2) {
+vec4 aerial_transmittance(SkyView view_11, highp sampler2D extinction_table_1, vec3 direction_10, float distance_m_2) {
     bool local_18 = false;
     float _e5 = elevation_of(direction_10);
-    bool is_below_4 = (_e5 < view_7.horizon_rad);
-    vec2 _e9 = air_span_m(view_7, direction_10.y, is_below_4);
+    bool is_below_6 = (_e5 < view_11.horizon_rad);
+    vec2 _e9 = air_span_m(view_11, direction_10.y, is_below_6);
     float length_m_16 = (min(distance_m_2, _e9.y) - _e9.x);
     if (!((length_m_16 <= 0.0))) {
-        local_18 = (_e5 > view_7.highest_rad);
+        local_18 = (_e5 > view_11.highest_rad);
     } else {
         local_18 = true;
     }
@@ -1877,7 +1964,7 @@ vec4 aerial_transmittance(SkyView view_7, highp sampler2D extinction_table_1, ve
         return vec4(1.0);
     }
     float _e32 = place_from_part(clamp((length_m_16 / (_e9.y - _e9.x)), 0.0, 1.0));
-    float _e35 = row_coordinate(view_7, _e5, is_below_4, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    float _e35 = row_coordinate(view_11, _e5, is_below_6, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
     float _e37 = texel_coordinate(_e32, AERIAL_DISTANCES);
     vec2 uv = vec2(_e37, _e35);
     vec4 _e40 = textureLod(extinction_table_1, vec2(uv), 0.0);
@@ -1894,16 +1981,16 @@ PathOptics rgb_path(RgbWeights radiance_3, RgbWeights transmittance, SpectralPat
 
 // Place of a row, 0 to 1, from the absolute elevation and its sine.
 // Cost: 2 exp.
-float fog_row_place(float per_sine, float sine, float elevation_rad_2) {
+float fog_row_place(float per_sine, float sine, float elevation_rad_3) {
     float logarithm = (log((1.0 + (sine * per_sine))) / log((1.0 + per_sine)));
-    return ((FOG_LOGARITHMIC * logarithm) + (0.25464788 * elevation_rad_2));
+    return ((FOG_LOGARITHMIC * logarithm) + (0.25464788 * elevation_rad_3));
 }
 
 // Texture coordinate of the rows of a direction: falling rays come first.
 // Cost: 2 exp.
-float fog_row_coordinate(FogTableView view_8, vec3 direction_11) {
+float fog_row_coordinate(FogTableView view_12, vec3 direction_11) {
     bool is_above = (direction_11.y > 0.0);
-    float per_sine_1 = (is_above ? view_8.above_per_sine : view_8.below_per_sine);
+    float per_sine_1 = (is_above ? view_12.above_per_sine : view_12.below_per_sine);
     float _e10 = elevation_of(direction_11);
     float _e12 = fog_row_place(per_sine_1, abs(direction_11.y), abs(_e10));
     return ((((is_above ? FOG_ROWS : 0.0) + 0.5) + (_e12 * 63.0)) / 128.0);
@@ -1918,47 +2005,47 @@ vec3 fog_opacity(vec3 depth_2) {
 
 // Place of a distance, 0 to 1, from the opacity and the transmittance up to there, relative to those of the whole ray to the ground or through the fog.
 // Cost: 6 exp.
-float fog_distance_place(FogTableView view_9, float sin_elevation_10, vec3 opacity, vec3 transmittance_1) {
-    vec3 vertical = ((sin_elevation_10 > 0.0) ? view_9.depth_above : view_9.depth_below);
+float fog_distance_place(FogTableView view_13, float sin_elevation_10, vec3 opacity, vec3 transmittance_1) {
+    vec3 vertical = ((sin_elevation_10 > 0.0) ? view_13.depth_above : view_13.depth_below);
     vec3 depth_6 = min((vertical / vec3(max(abs(sin_elevation_10), 1e-10))), vec3(1e25));
     vec3 _e17 = fog_opacity(depth_6);
     float whole = dot(_e17, vec3(1.0));
     float thin = (whole - dot(opacity, vec3(1.0)));
-    float dense = dot((transmittance_1 - exp(-(depth_6))), vec3(1.0));
-    float left = clamp((((whole < 1.5) ? thin : dense) / max(whole, 1e-30)), 0.0, 1.0);
+    float dense_1 = dot((transmittance_1 - exp(-(depth_6))), vec3(1.0));
+    float left = clamp((((whole < 1.5) ? thin : dense_1) / max(whole, 1e-30)), 0.0, 1.0);
     return (1.0 - sqrt(sqrt(left)));
 }
 
 // Sunlight that a stream (0, 1 or 2) scatters once, per unit of opacity, before its scale: from the texture coordinates of distance, row and angle.
 // Cost: 3 exp, 2 reads.
-vec3 fog_stream_light(highp sampler3D stream_table, highp sampler2D stream_phase_table, vec3 place_4, float stream) {
+vec3 fog_stream_light(highp sampler3D stream_table, highp sampler2D stream_phase_table, vec3 place_6, float stream) {
     float layer_5 = ((stream + 0.5) / 3.0);
-    vec4 logarithms = textureLod(stream_table, vec3(vec3(place_4.xy, layer_5)), 0.0);
-    vec4 phase_1 = textureLod(stream_phase_table, vec2(vec2(place_4.z, layer_5)), 0.0);
+    vec4 logarithms = textureLod(stream_table, vec3(vec3(place_6.xy, layer_5)), 0.0);
+    vec4 phase_1 = textureLod(stream_phase_table, vec2(vec2(place_6.z, layer_5)), 0.0);
     return (exp(logarithms.xyz) * phase_1.xyz);
 }
 
 // Fog between the eye and a point, by the optical depth on the way: extinction times `exponential_column_m`, or the column of another profile. Rays end at the ground.
 // Cost: 23 exp, 7 reads.
-PathOptics tabulated_fog(FogTableView view_10, highp sampler3D diffuse_table, highp sampler3D stream_table_1, highp sampler2D stream_phase_table_1, vec3 direction_12, vec3 optical_depth_2) {
+PathOptics tabulated_fog(FogTableView view_14, highp sampler3D diffuse_table, highp sampler3D stream_table_1, highp sampler2D stream_phase_table_1, vec3 direction_12, vec3 optical_depth_2) {
     vec3 _e7 = fog_opacity(optical_depth_2);
     vec3 transmittance_3 = exp(-(optical_depth_2));
-    float _e11 = azimuth_place(direction_12, view_10.sun);
+    float _e11 = azimuth_place(direction_12, view_14.sun);
     float _e13 = texel_coordinate(_e11, FOG_AZIMUTHS);
-    float _e14 = fog_row_coordinate(view_10, direction_12);
-    float _e16 = fog_distance_place(view_10, direction_12.y, _e7, transmittance_3);
+    float _e14 = fog_row_coordinate(view_14, direction_12);
+    float _e16 = fog_distance_place(view_14, direction_12.y, _e7, transmittance_3);
     float _e18 = texel_coordinate(_e16, FOG_DISTANCES);
     vec4 _e21 = textureLod(diffuse_table, vec3(vec3(_e13, _e14, _e18)), 0.0);
     vec3 diffuse = _e21.xyz;
-    float _e24 = one_minus_cos_between(direction_12, view_10.sun);
+    float _e24 = one_minus_cos_between(direction_12, view_14.sun);
     float _e25 = phase_place(_e24);
     float _e27 = texel_coordinate(_e25, PHASE_ANGLES);
-    vec3 place_9 = vec3(_e18, _e14, _e27);
-    vec3 _e30 = fog_stream_light(stream_table_1, stream_phase_table_1, place_9, 0.0);
-    vec3 _e32 = fog_stream_light(stream_table_1, stream_phase_table_1, place_9, 1.0);
-    vec3 _e35 = fog_stream_light(stream_table_1, stream_phase_table_1, place_9, 2.0);
+    vec3 place_10 = vec3(_e18, _e14, _e27);
+    vec3 _e30 = fog_stream_light(stream_table_1, stream_phase_table_1, place_10, 0.0);
+    vec3 _e32 = fog_stream_light(stream_table_1, stream_phase_table_1, place_10, 1.0);
+    vec3 _e35 = fog_stream_light(stream_table_1, stream_phase_table_1, place_10, 2.0);
     vec3 sunlit_2 = ((_e30 + _e32) + _e35);
-    vec3 source_1 = ((view_10.diffuse_scale * diffuse) + (view_10.sunlit_scale * max(sunlit_2, vec3(0.0))));
+    vec3 source_1 = ((view_14.diffuse_scale * diffuse) + (view_14.sunlit_scale * max(sunlit_2, vec3(0.0))));
     return PathOptics(transmittance_3, (_e7 * source_1));
 }
 
@@ -1998,13 +2085,13 @@ vec3 article_transmittance(vec3 from_m_8, vec3 to_m_6) {
     vec3 sum_5 = vec3(0.0);
     int i_12 = 0;
     vec3 ds = ((to_m_6 - from_m_8) / vec3(8.0));
-    bool loop_init_11 = true;
+    bool loop_init_12 = true;
     while(true) {
-        if (!loop_init_11) {
+        if (!loop_init_12) {
             int _e23 = i_12;
             i_12 = (_e23 + 1);
         }
-        loop_init_11 = false;
+        loop_init_12 = false;
         int _e11 = i_12;
         if ((_e11 < ARTICLE_STEPS)) {
         } else {
@@ -2054,11 +2141,11 @@ ArticleSky article_sky(float eye_altitude_m, float zenith_illuminance) {
 
 // Light that a point scatters along a view ray, per metre.
 // Cost: 6 exp, 3 exp a step; 8 steps.
-vec3 article_source(ArticleSky sky, vec3 position_7, vec3 view_11, vec3 sun_1) {
+vec3 article_source(ArticleSky sky, vec3 position_7, vec3 view_15, vec3 sun_1) {
     float _e5 = article_distance_m(position_7, sun_1, ARTICLE_TOP_RADIUS_M);
     vec3 leaves = (position_7 + (sun_1 * _e5));
     vec3 _e8 = article_transmittance(position_7, leaves);
-    float mu_3 = dot(view_11, sun_1);
+    float mu_3 = dot(view_15, sun_1);
     vec3 _e10 = article_sigma_rayleigh(position_7);
     float _e11 = article_rayleigh_phase(mu_3);
     vec3 rayleigh = (_e10 * _e11);
@@ -2070,20 +2157,20 @@ vec3 article_source(ArticleSky sky, vec3 position_7, vec3 view_11, vec3 sun_1) {
 
 // Luminance of the sky along a direction above the horizon, without the sun's disc.
 // Cost: 15 exp a step; 8 steps, in each of which two marches of 8 steps take 6 of these, 456 in all.
-vec3 article_luminance(ArticleSky sky_1, vec3 view_12, vec3 sun_2) {
+vec3 article_luminance(ArticleSky sky_1, vec3 view_16, vec3 sun_2) {
     vec3 sum_6 = vec3(0.0);
     int i_13 = 0;
-    float _e6 = article_distance_m(sky_1.eye, view_12, ARTICLE_TOP_RADIUS_M);
-    vec3 leaves_1 = (sky_1.eye + (view_12 * _e6));
+    float _e6 = article_distance_m(sky_1.eye, view_16, ARTICLE_TOP_RADIUS_M);
+    vec3 leaves_1 = (sky_1.eye + (view_16 * _e6));
     vec3 ds_1 = ((leaves_1 - sky_1.eye) / vec3(8.0));
     vec3 direction_15 = (ds_1 / vec3(length(ds_1)));
-    bool loop_init_12 = true;
+    bool loop_init_13 = true;
     while(true) {
-        if (!loop_init_12) {
+        if (!loop_init_13) {
             int _e38 = i_13;
             i_13 = (_e38 + 1);
         }
-        loop_init_12 = false;
+        loop_init_13 = false;
         int _e22 = i_13;
         if ((_e22 < ARTICLE_STEPS)) {
         } else {
@@ -2104,11 +2191,11 @@ vec3 article_luminance(ArticleSky sky_1, vec3 view_12, vec3 sun_2) {
 
 // Luminance of the sun's disc along a direction above the horizon, whose edge is smooth from 0.95 to 1.05 of its radius. The cosine is clamped to 1, unlike as printed.
 // Cost: 3 exp, 3 exp a step; 8 steps.
-vec3 article_disc(ArticleSky sky_2, vec3 view_13, vec3 sun_3) {
-    float angle = acos(min(dot(view_13, sun_3), 1.0));
+vec3 article_disc(ArticleSky sky_2, vec3 view_17, vec3 sun_3) {
+    float angle = acos(min(dot(view_17, sun_3), 1.0));
     float disc = (1.0 - smoothstep((0.95 * sky_2.sun_radius_rad), (1.05 * sky_2.sun_radius_rad), angle));
-    float _e19 = article_distance_m(sky_2.eye, view_13, ARTICLE_TOP_RADIUS_M);
-    vec3 leaves_2 = (sky_2.eye + (view_13 * _e19));
+    float _e19 = article_distance_m(sky_2.eye, view_17, ARTICLE_TOP_RADIUS_M);
+    vec3 leaves_2 = (sky_2.eye + (view_17 * _e19));
     vec3 _e25 = article_transmittance(sky_2.eye, leaves_2);
     return ((sky_2.outer_space * disc) * _e25);
 }
@@ -2142,8 +2229,8 @@ float place_on_disc(float sin_radius, float one_minus_cos_8) {
 
 // Part of a pixel that the disc covers, 0 to 1: a ramp as wide as a pixel across the edge, so that the edge is smooth and the disc's light is kept, within `(pixel / radius)^2 / 12`. `sin_pixel` is the sine of the angle that a pixel spans; 0 gives a sharp edge.
 // Cost: no exp.
-float disc_coverage(float place_5, float sin_radius_1, float sin_pixel) {
-    return clamp((((1.0 - place_5) * (sin_radius_1 / max(sin_pixel, (1e-6 * sin_radius_1)))) + 0.5), 0.0, 1.0);
+float disc_coverage(float place_7, float sin_radius_1, float sin_pixel) {
+    return clamp((((1.0 - place_7) * (sin_radius_1 / max(sin_pixel, (1e-6 * sin_radius_1)))) + 0.5), 0.0, 1.0);
 }
 
 // Radiance of the sun's disc in a pixel whose centre is `one_minus_cos` from the sun, from the disc's mean radiance: the irradiance on a surface that faces the sun, divided by `pi sin_radius^2`. Without attenuation by air.
@@ -2221,8 +2308,8 @@ vec3 camera_tone(vec3 exposed_1, float contrast_1, float saturation) {
 // Cost: 9 exp.
 vec3 agx_response(vec3 x_4) {
     vec3 stops = log2((max(x_4, vec3(1e-9)) / vec3(0.18)));
-    vec3 place_10 = clamp(((stops + vec3(10.0)) / vec3(16.5)), vec3(0.0), vec3(1.0));
-    vec3 from_grey = (place_10 - vec3(0.6060606));
+    vec3 place_11 = clamp(((stops + vec3(10.0)) / vec3(16.5)), vec3(0.0), vec3(1.0));
+    vec3 from_grey = (place_11 - vec3(0.6060606));
     bvec3 is_toe = lessThan(from_grey, vec3(0.0));
     vec3 limit = mix(vec3(0.7151983), vec3(0.5656756), is_toe);
     vec3 u_2 = (2.4 * abs(from_grey));

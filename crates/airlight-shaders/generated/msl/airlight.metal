@@ -99,6 +99,12 @@ struct SkyView {
     float air_height_m;
     float horizon_rad;
     float highest_rad;
+    float kink_rad;
+    float kink_place;
+    float dense_share;
+    float dense_azimuth;
+    float dense_width;
+    char _pad11[12];
 };
 struct SkyScales {
     metal::float4 smooth_light;
@@ -145,8 +151,8 @@ constant uint LIGHT_SPHERE = 2u;
 constant uint LIGHT_NODES = 8u;
 constant float LIGHT_CUTOFF = 12.667;
 constant float SKY_AZIMUTHS = 64.0;
-constant float SKY_ROWS_ABOVE = 128.0;
-constant float SKY_ROWS_BELOW = 32.0;
+constant float SKY_ROWS_ABOVE = 125.0;
+constant float SKY_ROWS_BELOW = 35.0;
 constant float AERIAL_AZIMUTHS = 32.0;
 constant float AERIAL_ROWS_ABOVE = 32.0;
 constant float AERIAL_ROWS_BELOW = 32.0;
@@ -396,25 +402,25 @@ metal::float2 below_height(
 ) {
     float first = 0.0;
     float last = 0.0;
-    float above = ray_2.height_m - height_m_1;
+    float above_1 = ray_2.height_m - height_m_1;
     if (ray_2.curvature_per_m > 0.0) {
-        float discriminant = (ray_2.sin_elevation * ray_2.sin_elevation) - ((4.0 * ray_2.curvature_per_m) * above);
+        float discriminant = (ray_2.sin_elevation * ray_2.sin_elevation) - ((4.0 * ray_2.curvature_per_m) * above_1);
         if (discriminant > 0.0) {
             float root = metal::sqrt(discriminant);
             float q = -0.5 * (ray_2.sin_elevation + ((ray_2.sin_elevation >= 0.0) ? root : -(root)));
             float a_2 = q / ray_2.curvature_per_m;
-            float b_2 = above / q;
+            float b_2 = above_1 / q;
             first = metal::min(a_2, b_2);
             last = metal::max(a_2, b_2);
         }
     } else {
         if (ray_2.sin_elevation == 0.0) {
-            last = (above < 0.0) ? ray_2.length_m : 0.0;
+            last = (above_1 < 0.0) ? ray_2.length_m : 0.0;
         } else {
             if (ray_2.sin_elevation > 0.0) {
-                last = -(above) / ray_2.sin_elevation;
+                last = -(above_1) / ray_2.sin_elevation;
             } else {
-                first = above / -(ray_2.sin_elevation);
+                first = above_1 / -(ray_2.sin_elevation);
                 last = ray_2.length_m;
             }
         }
@@ -1245,10 +1251,10 @@ metal::float2 light_gauss_node(
 ) {
     type_8 places = type_8 {{0.019855073, 0.10166676, 0.23723379, 0.40828267}};
     type_8 weights = type_8 {{0.050614268, 0.11119052, 0.15685332, 0.18134189}};
-    uint k = metal::min(i_5, 7u - metal::min(i_5, 7u));
-    float _e19 = places.inner[k];
-    float _e21 = places.inner[k];
-    float _e28 = weights.inner[k];
+    uint k_1 = metal::min(i_5, 7u - metal::min(i_5, 7u));
+    float _e19 = places.inner[k_1];
+    float _e21 = places.inner[k_1];
+    float _e28 = weights.inner[k_1];
     return metal::float2((i_5 > 3u) ? (1.0 - _e21) : _e19, _e28);
 }
 
@@ -1690,8 +1696,8 @@ metal::float3 light_panel_in_exponential_fog(
             float _e151 = forward;
             float t_3 = metal::max(_e150 + (((_e151 * 0.5) * _e147.x) * ((_e147.x + (2.0 * _e119)) / s_1)), 0.0);
             float _e165 = forward;
-            float place_6 = ((_e165 * 0.5) * (s_1 - h_6)) * ((s_1 + h_6) / s_1);
-            metal::float3 _e173 = light_at(ray_12, place_6);
+            float place_8 = ((_e165 * 0.5) * (s_1 - h_6)) * ((s_1 + h_6) / s_1);
+            metal::float3 _e173 = light_at(ray_12, place_8);
             float centre_m_1 = (ray_12.light.kind == LIGHT_SPHERE) ? (_e173.y + ray_12.light.radius_m) : _e173.y;
             float _e185 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_7, t_3, light_height_m_1, centre_m_1, _e173.y);
             float _e192 = decayed(((eye_height_m_1 + (sin_elevation_7 * t_3)) - fog_4.reference_height_m) / fog_4.scale_height_m);
@@ -2036,38 +2042,132 @@ float azimuth_place(
     return metal::atan2(across_1, along_2) * 0.31830987;
 }
 
-// Texture coordinate of an elevation in a table with rows above and below the horizon, dense towards it: at the square of the row above, and at its fourth power below, where rays from a low eye soon meet the ground. The first rows hold the elevations from the horizon on; both parts end in texel centres, so that filtering does not mix them.
+// Place from 0 to 1 of an azimuth from the sun, in half turns, among the columns of a table. From space they are dense where the planet's shadow crosses the limb.
+// Cost: no exp.
+float column_place(
+    SkyView view,
+    float azimuth
+) {
+    if (view.dense_share == 0.0) {
+        return azimuth;
+    }
+    metal::float3 dense = metal::atan((metal::float3(azimuth, 0.0, 1.0) - metal::float3(view.dense_azimuth)) / metal::float3(view.dense_width));
+    return metal::mix(azimuth, (dense.x - dense.y) / (dense.z - dense.y), view.dense_share);
+}
+
+// Inverse of `column_place`, by bisection.
+// Cost: no exp.
+float azimuth_from_column_place(
+    SkyView view_1,
+    float place_2
+) {
+    float below = 0.0;
+    float above = 1.0;
+    int k = 0;
+    if (view_1.dense_share == 0.0) {
+        return place_2;
+    }
+    bool loop_init_11 = true;
+    while(true) {
+        if (!loop_init_11) {
+            int _e22 = k;
+            k = as_type<int>(as_type<uint>(_e22) + as_type<uint>(1));
+        }
+        loop_init_11 = false;
+        int _e11 = k;
+        if (_e11 < 24) {
+        } else {
+            break;
+        }
+        {
+            float _e14 = below;
+            float _e15 = above;
+            float middle_1 = 0.5 * (_e14 + _e15);
+            float _e19 = column_place(view_1, middle_1);
+            if (_e19 < place_2) {
+                below = middle_1;
+            } else {
+                above = middle_1;
+            }
+        }
+    }
+    float _e24 = below;
+    float _e25 = above;
+    return 0.5 * (_e24 + _e25);
+}
+
+// Place from 0 to 1 of an elevation among the rows above or below the horizon. Above it they are dense towards the horizon, at the square of the place, and towards the rays that graze a jump of density, from below; below it at the fourth power of the place for a low eye, whose rays soon meet the ground, and the more at its square the farther the horizon dips.
+// Cost: no exp.
+float row_place(
+    SkyView view_2,
+    float elevation_rad,
+    bool is_below
+) {
+    if (is_below) {
+        float part_2 = (elevation_rad - view_2.horizon_rad) / (-1.5707964 - view_2.horizon_rad);
+        float root_2 = metal::sqrt(metal::sqrt(metal::clamp(part_2, 0.0, 1.0)));
+        float linear_below = -(metal::sin(view_2.horizon_rad));
+        return root_2 * ((1.0 - linear_below) + (linear_below * root_2));
+    }
+    if (elevation_rad < view_2.kink_rad) {
+        float part_3 = metal::clamp((elevation_rad - view_2.horizon_rad) / (view_2.kink_rad - view_2.horizon_rad), 0.0, 1.0);
+        return (view_2.kink_place * 0.63661975) * metal::atan2(metal::sqrt(part_3), metal::sqrt(1.0 - part_3));
+    }
+    float part_4 = metal::clamp((elevation_rad - view_2.kink_rad) / (view_2.highest_rad - view_2.kink_rad), 0.0, 1.0);
+    return view_2.kink_place + ((1.0 - view_2.kink_place) * metal::sqrt(part_4));
+}
+
+// Inverse of `row_place`: elevation of a place, rad.
+// Cost: no exp.
+float elevation_from_row_place(
+    SkyView view_3,
+    float place_3,
+    bool is_below_1
+) {
+    if (is_below_1) {
+        float linear_below_1 = -(metal::sin(view_3.horizon_rad));
+        float even = 1.0 - linear_below_1;
+        float root_3 = (2.0 * place_3) / (even + metal::sqrt((even * even) + ((4.0 * linear_below_1) * place_3)));
+        float squared = root_3 * root_3;
+        return view_3.horizon_rad + (((-1.5707964 - view_3.horizon_rad) * squared) * squared);
+    }
+    if (place_3 < view_3.kink_place) {
+        float sine_3 = metal::sin((1.5707964 * place_3) / view_3.kink_place);
+        return view_3.horizon_rad + (((view_3.kink_rad - view_3.horizon_rad) * sine_3) * sine_3);
+    }
+    float part_5 = (place_3 - view_3.kink_place) / (1.0 - view_3.kink_place);
+    return view_3.kink_rad + (((view_3.highest_rad - view_3.kink_rad) * part_5) * part_5);
+}
+
+// Texture coordinate of an elevation in a table with rows above and below the horizon, at their `row_place`. The first rows hold the elevations from the horizon on; both parts end in texel centres, so that filtering does not mix them.
 // Cost: no exp.
 float row_coordinate(
-    SkyView view,
-    float elevation_rad,
-    bool is_below,
+    SkyView view_4,
+    float elevation_rad_1,
+    bool is_below_2,
     float rows_above,
     float rows_below
 ) {
-    float end_4 = is_below ? -1.5707964 : view.highest_rad;
-    float rows = is_below ? rows_below : rows_above;
-    float part_2 = metal::clamp((elevation_rad - view.horizon_rad) / (end_4 - view.horizon_rad), 0.0, 1.0);
-    float place_7 = is_below ? metal::sqrt(metal::sqrt(part_2)) : metal::sqrt(part_2);
-    float first_2 = is_below ? rows_above : 0.0;
-    return ((first_2 + 0.5) + (place_7 * (rows - 1.0))) / (rows_above + rows_below);
+    float rows = is_below_2 ? rows_below : rows_above;
+    float first_2 = is_below_2 ? rows_above : 0.0;
+    float _e10 = row_place(view_4, elevation_rad_1, is_below_2);
+    return ((first_2 + 0.5) + (_e10 * (rows - 1.0))) / (rows_above + rows_below);
 }
 
 // Inverse of `row_coordinate`: elevation of a texture coordinate, rad.
 // Cost: no exp.
 float elevation_from_row_coordinate(
-    SkyView view_1,
+    SkyView view_5,
     float coordinate_1,
     float rows_above_1,
     float rows_below_1
 ) {
     float row_2 = coordinate_1 * (rows_above_1 + rows_below_1);
-    bool is_below_1 = row_2 >= rows_above_1;
-    float end_5 = is_below_1 ? -1.5707964 : view_1.highest_rad;
-    float rows_1 = is_below_1 ? rows_below_1 : rows_above_1;
-    float place_8 = ((row_2 - (is_below_1 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0);
-    float squared = place_8 * place_8;
-    return view_1.horizon_rad + ((end_5 - view_1.horizon_rad) * (is_below_1 ? (squared * squared) : squared));
+    bool is_below_3 = row_2 >= rows_above_1;
+    float rows_1 = is_below_3 ? rows_below_1 : rows_above_1;
+    float place_9 = ((row_2 - (is_below_3 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0);
+    float _e16 = elevation_from_row_place(view_5, place_9, is_below_3);
+    return _e16;
 }
 
 // Elevation of a direction, rad.
@@ -2081,50 +2181,51 @@ float elevation_of(
 // Texture coordinates of a direction in a sky table.
 // Cost: no exp.
 metal::float2 uv_from_direction(
-    SkyView view_2,
+    SkyView view_6,
     metal::float3 direction_7
 ) {
     float _e2 = elevation_of(direction_7);
-    bool is_below_2 = _e2 < view_2.horizon_rad;
-    float _e6 = azimuth_place(direction_7, view_2.sun);
-    float _e8 = texel_coordinate(_e6, SKY_AZIMUTHS);
-    float _e11 = row_coordinate(view_2, _e2, is_below_2, SKY_ROWS_ABOVE, SKY_ROWS_BELOW);
-    return metal::float2(_e8, _e11);
+    bool is_below_4 = _e2 < view_6.horizon_rad;
+    float _e6 = azimuth_place(direction_7, view_6.sun);
+    float _e7 = column_place(view_6, _e6);
+    float _e9 = texel_coordinate(_e7, SKY_AZIMUTHS);
+    float _e12 = row_coordinate(view_6, _e2, is_below_4, SKY_ROWS_ABOVE, SKY_ROWS_BELOW);
+    return metal::float2(_e9, _e12);
 }
 
 // Unit vector at an azimuth from the sun, as a fraction of half a turn, and an elevation.
 // Cost: no exp.
 metal::float3 direction_from_azimuth_elevation(
-    SkyView view_3,
-    float azimuth,
-    float elevation_rad_1
+    SkyView view_7,
+    float azimuth_1,
+    float elevation_rad_2
 ) {
-    bool is_vertical_1 = (metal::abs(view_3.sun[0]) + metal::abs(view_3.sun[2])) < 0.000000001;
-    metal::float2 towards_1 = metal::normalize(is_vertical_1 ? metal::float2(1.0, 0.0) : metal::float3(view_3.sun).xz);
-    float along_3 = metal::cos(azimuth * 3.1415927) * metal::cos(elevation_rad_1);
-    float across_2 = metal::sin(azimuth * 3.1415927) * metal::cos(elevation_rad_1);
-    return metal::float3((towards_1.x * along_3) - (towards_1.y * across_2), metal::sin(elevation_rad_1), (towards_1.y * along_3) + (towards_1.x * across_2));
+    bool is_vertical_1 = (metal::abs(view_7.sun[0]) + metal::abs(view_7.sun[2])) < 0.000000001;
+    metal::float2 towards_1 = metal::normalize(is_vertical_1 ? metal::float2(1.0, 0.0) : metal::float3(view_7.sun).xz);
+    float along_3 = metal::cos(azimuth_1 * 3.1415927) * metal::cos(elevation_rad_2);
+    float across_2 = metal::sin(azimuth_1 * 3.1415927) * metal::cos(elevation_rad_2);
+    return metal::float3((towards_1.x * along_3) - (towards_1.y * across_2), metal::sin(elevation_rad_2), (towards_1.y * along_3) + (towards_1.x * across_2));
 }
 
 // Interval of a ray inside the air, m from the eye: up to the ground, if it meets that, or to the top. From space, a ray that misses the air has an empty interval.
 // Cost: no exp.
 metal::float2 air_span_m(
-    SkyView view_4,
+    SkyView view_8,
     float sin_elevation_9,
     bool meets_ground
 ) {
     float end_1 = {};
-    float b_3 = (view_4.ground_radius_m + view_4.height_m) * sin_elevation_9;
-    float over_ground = view_4.height_m * ((2.0 * view_4.ground_radius_m) + view_4.height_m);
-    float over_top = (view_4.height_m - view_4.air_height_m) * (((2.0 * view_4.ground_radius_m) + view_4.height_m) + view_4.air_height_m);
-    float root_2 = metal::sqrt(metal::max((b_3 * b_3) - over_top, 0.0));
-    float start_4 = (over_top > 0.0) ? (over_top / (root_2 - b_3)) : 0.0;
-    end_1 = root_2 - b_3;
+    float b_3 = (view_8.ground_radius_m + view_8.height_m) * sin_elevation_9;
+    float over_ground = view_8.height_m * ((2.0 * view_8.ground_radius_m) + view_8.height_m);
+    float over_top = (view_8.height_m - view_8.air_height_m) * (((2.0 * view_8.ground_radius_m) + view_8.height_m) + view_8.air_height_m);
+    float root_4 = metal::sqrt(metal::max((b_3 * b_3) - over_top, 0.0));
+    float start_4 = (over_top > 0.0) ? (over_top / (root_4 - b_3)) : 0.0;
+    end_1 = root_4 - b_3;
     if (meets_ground) {
         end_1 = over_ground / (metal::sqrt(metal::max((b_3 * b_3) - over_ground, 0.0)) - b_3);
     } else {
         if (b_3 > 0.0) {
-            end_1 = -(over_top) / (root_2 + b_3);
+            end_1 = -(over_top) / (root_4 + b_3);
         }
     }
     float _e50 = end_1;
@@ -2142,9 +2243,9 @@ float place_from_part(
 // Inverse of `place_from_part`.
 // Cost: no exp.
 float part_from_place(
-    float place_2
+    float place_4
 ) {
-    return place_2 * place_2;
+    return place_4 * place_4;
 }
 
 // Place from 0 to 1 of a scattering angle in a table of phase functions, dense forwards, by 1 minus the cosine.
@@ -2159,9 +2260,9 @@ float phase_place(
 // Inverse of `phase_place`.
 // Cost: no exp.
 float one_minus_cos_from_phase_place(
-    float place_3
+    float place_5
 ) {
-    float half_sine = metal::sin((1.5707964 * place_3) * place_3);
+    float half_sine = metal::sin((1.5707964 * place_5) * place_5);
     return (2.0 * half_sine) * half_sine;
 }
 
@@ -2181,7 +2282,7 @@ metal::float4 haze_phase(
 // Radiance of the sky, or of the ground below the horizon, along a direction at four wavelengths, without the sun's disc.
 // Cost: 8 exp, 3 reads.
 metal::float4 sky_radiance(
-    SkyView view_5,
+    SkyView view_9,
     SkyScales scales,
     metal::texture2d<float, metal::access::sample> smooth_table,
     metal::texture2d<float, metal::access::sample> haze_table,
@@ -2190,11 +2291,11 @@ metal::float4 sky_radiance(
     metal::float3 direction_8
 ) {
     float _e7 = elevation_of(direction_8);
-    if (_e7 > view_5.highest_rad) {
+    if (_e7 > view_9.highest_rad) {
         return metal::float4(0.0);
     }
-    metal::float2 _e12 = uv_from_direction(view_5, direction_8);
-    float _e14 = one_minus_cos_between(direction_8, view_5.sun);
+    metal::float2 _e12 = uv_from_direction(view_9, direction_8);
+    float _e14 = one_minus_cos_between(direction_8, view_9.sun);
     metal::float4 _e15 = haze_phase(phase_table_1, linear_sampler_1, _e14);
     metal::float4 _e17 = smooth_table.sample(linear_sampler_1, _e12, metal::level(0.0));
     metal::float4 smooth_light = metal::exp(_e17) * scales.smooth_light;
@@ -2206,7 +2307,7 @@ metal::float4 sky_radiance(
 // Air between the eye and a point at a distance along a direction, at four wavelengths. The extinction table holds the mean extinction from the first air on, 1/km.
 // Cost: 12 exp, 4 reads.
 SpectralPath aerial_perspective(
-    SkyView view_6,
+    SkyView view_10,
     SkyScales scales_1,
     metal::texture3d<float, metal::access::sample> smooth_table_1,
     metal::texture3d<float, metal::access::sample> haze_table_1,
@@ -2218,11 +2319,11 @@ SpectralPath aerial_perspective(
 ) {
     bool local_17 = {};
     float _e9 = elevation_of(direction_9);
-    bool is_below_3 = _e9 < view_6.horizon_rad;
-    metal::float2 _e13 = air_span_m(view_6, direction_9.y, is_below_3);
+    bool is_below_5 = _e9 < view_10.horizon_rad;
+    metal::float2 _e13 = air_span_m(view_10, direction_9.y, is_below_5);
     float length_m_15 = metal::min(distance_m_1, _e13.y) - _e13.x;
     if (!((length_m_15 <= 0.0))) {
-        local_17 = _e9 > view_6.highest_rad;
+        local_17 = _e9 > view_10.highest_rad;
     } else {
         local_17 = true;
     }
@@ -2231,29 +2332,30 @@ SpectralPath aerial_perspective(
         return SpectralPath {metal::float4(1.0), metal::float4(0.0)};
     }
     float _e39 = place_from_part(metal::clamp(length_m_15 / (_e13.y - _e13.x), 0.0, 1.0));
-    float _e42 = row_coordinate(view_6, _e9, is_below_3, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
-    float _e44 = azimuth_place(direction_9, view_6.sun);
-    float _e46 = texel_coordinate(_e44, AERIAL_AZIMUTHS);
-    float _e48 = texel_coordinate(_e39, AERIAL_DISTANCES);
-    metal::float3 uvw = metal::float3(_e46, _e42, _e48);
-    float _e51 = one_minus_cos_between(direction_9, view_6.sun);
-    metal::float4 _e52 = haze_phase(phase_table_2, linear_sampler_2, _e51);
-    metal::float4 _e55 = extinction_table.sample(linear_sampler_2, uvw.zy, metal::level(0.0));
-    metal::float4 depth_5 = _e55 * (length_m_15 * 0.001);
-    metal::float4 _e60 = smooth_table_1.sample(linear_sampler_2, uvw, metal::level(0.0));
-    metal::float4 smooth_light_1 = metal::exp(_e60) * scales_1.smooth_light;
-    metal::float4 _e65 = haze_table_1.sample(linear_sampler_2, uvw, metal::level(0.0));
-    metal::float4 haze_1 = metal::exp(_e65) * scales_1.haze;
-    metal::float3 _e70 = mean_transmittance_rgb(depth_5.xyz);
-    float _e72 = mean_transmittance(depth_5.w);
-    metal::float4 opacity_2 = depth_5 * metal::float4(_e70, _e72);
-    return SpectralPath {metal::float4(1.0) - opacity_2, (smooth_light_1 + (haze_1 * _e52)) * opacity_2};
+    float _e42 = row_coordinate(view_10, _e9, is_below_5, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    float _e44 = azimuth_place(direction_9, view_10.sun);
+    float _e45 = column_place(view_10, _e44);
+    float _e47 = texel_coordinate(_e45, AERIAL_AZIMUTHS);
+    float _e49 = texel_coordinate(_e39, AERIAL_DISTANCES);
+    metal::float3 uvw = metal::float3(_e47, _e42, _e49);
+    float _e52 = one_minus_cos_between(direction_9, view_10.sun);
+    metal::float4 _e53 = haze_phase(phase_table_2, linear_sampler_2, _e52);
+    metal::float4 _e56 = extinction_table.sample(linear_sampler_2, uvw.zy, metal::level(0.0));
+    metal::float4 depth_5 = _e56 * (length_m_15 * 0.001);
+    metal::float4 _e61 = smooth_table_1.sample(linear_sampler_2, uvw, metal::level(0.0));
+    metal::float4 smooth_light_1 = metal::exp(_e61) * scales_1.smooth_light;
+    metal::float4 _e66 = haze_table_1.sample(linear_sampler_2, uvw, metal::level(0.0));
+    metal::float4 haze_1 = metal::exp(_e66) * scales_1.haze;
+    metal::float3 _e71 = mean_transmittance_rgb(depth_5.xyz);
+    float _e73 = mean_transmittance(depth_5.w);
+    metal::float4 opacity_2 = depth_5 * metal::float4(_e71, _e73);
+    return SpectralPath {metal::float4(1.0) - opacity_2, (smooth_light_1 + (haze_1 * _e53)) * opacity_2};
 }
 
 // Transmittance of the air between the eye and a point at a distance along a direction, at four wavelengths: that of `aerial_perspective` alone.
 // Cost: 4 exp, 1 read.
 metal::float4 aerial_transmittance(
-    SkyView view_7,
+    SkyView view_11,
     metal::texture2d<float, metal::access::sample> extinction_table_1,
     metal::sampler linear_sampler_3,
     metal::float3 direction_10,
@@ -2261,11 +2363,11 @@ metal::float4 aerial_transmittance(
 ) {
     bool local_18 = {};
     float _e5 = elevation_of(direction_10);
-    bool is_below_4 = _e5 < view_7.horizon_rad;
-    metal::float2 _e9 = air_span_m(view_7, direction_10.y, is_below_4);
+    bool is_below_6 = _e5 < view_11.horizon_rad;
+    metal::float2 _e9 = air_span_m(view_11, direction_10.y, is_below_6);
     float length_m_16 = metal::min(distance_m_2, _e9.y) - _e9.x;
     if (!((length_m_16 <= 0.0))) {
-        local_18 = _e5 > view_7.highest_rad;
+        local_18 = _e5 > view_11.highest_rad;
     } else {
         local_18 = true;
     }
@@ -2274,7 +2376,7 @@ metal::float4 aerial_transmittance(
         return metal::float4(1.0);
     }
     float _e32 = place_from_part(metal::clamp(length_m_16 / (_e9.y - _e9.x), 0.0, 1.0));
-    float _e35 = row_coordinate(view_7, _e5, is_below_4, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    float _e35 = row_coordinate(view_11, _e5, is_below_6, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
     float _e37 = texel_coordinate(_e32, AERIAL_DISTANCES);
     metal::float2 uv = metal::float2(_e37, _e35);
     metal::float4 _e40 = extinction_table_1.sample(linear_sampler_3, uv, metal::level(0.0));
@@ -2298,20 +2400,20 @@ PathOptics rgb_path(
 float fog_row_place(
     float per_sine,
     float sine,
-    float elevation_rad_2
+    float elevation_rad_3
 ) {
     float logarithm = metal::log(1.0 + (sine * per_sine)) / metal::log(1.0 + per_sine);
-    return (FOG_LOGARITHMIC * logarithm) + (0.25464788 * elevation_rad_2);
+    return (FOG_LOGARITHMIC * logarithm) + (0.25464788 * elevation_rad_3);
 }
 
 // Texture coordinate of the rows of a direction: falling rays come first.
 // Cost: 2 exp.
 float fog_row_coordinate(
-    FogTableView view_8,
+    FogTableView view_12,
     metal::float3 direction_11
 ) {
     bool is_above = direction_11.y > 0.0;
-    float per_sine_1 = is_above ? view_8.above_per_sine : view_8.below_per_sine;
+    float per_sine_1 = is_above ? view_12.above_per_sine : view_12.below_per_sine;
     float _e10 = elevation_of(direction_11);
     float _e12 = fog_row_place(per_sine_1, metal::abs(direction_11.y), metal::abs(_e10));
     return (((is_above ? FOG_ROWS : 0.0) + 0.5) + (_e12 * 63.0)) / 128.0;
@@ -2329,18 +2431,18 @@ metal::float3 fog_opacity(
 // Place of a distance, 0 to 1, from the opacity and the transmittance up to there, relative to those of the whole ray to the ground or through the fog.
 // Cost: 6 exp.
 float fog_distance_place(
-    FogTableView view_9,
+    FogTableView view_13,
     float sin_elevation_10,
     metal::float3 opacity,
     metal::float3 transmittance_1
 ) {
-    metal::float3 vertical = (sin_elevation_10 > 0.0) ? view_9.depth_above : view_9.depth_below;
+    metal::float3 vertical = (sin_elevation_10 > 0.0) ? view_13.depth_above : view_13.depth_below;
     metal::float3 depth_6 = metal::min(vertical / metal::float3(metal::max(metal::abs(sin_elevation_10), 0.0000000001)), metal::float3(10000000000000000000000000.0));
     metal::float3 _e17 = fog_opacity(depth_6);
     float whole = metal::dot(_e17, metal::float3(1.0));
     float thin = whole - metal::dot(opacity, metal::float3(1.0));
-    float dense = metal::dot(transmittance_1 - metal::exp(-(depth_6)), metal::float3(1.0));
-    float left = metal::clamp(((whole < 1.5) ? thin : dense) / metal::max(whole, 0.000000000000000000000000000001), 0.0, 1.0);
+    float dense_1 = metal::dot(transmittance_1 - metal::exp(-(depth_6)), metal::float3(1.0));
+    float left = metal::clamp(((whole < 1.5) ? thin : dense_1) / metal::max(whole, 0.000000000000000000000000000001), 0.0, 1.0);
     return 1.0 - metal::sqrt(metal::sqrt(left));
 }
 
@@ -2350,19 +2452,19 @@ metal::float3 fog_stream_light(
     metal::texture3d<float, metal::access::sample> stream_table,
     metal::texture2d<float, metal::access::sample> stream_phase_table,
     metal::sampler linear_sampler_4,
-    metal::float3 place_4,
+    metal::float3 place_6,
     float stream
 ) {
     float layer_5 = (stream + 0.5) / 3.0;
-    metal::float4 logarithms = stream_table.sample(linear_sampler_4, metal::float3(place_4.xy, layer_5), metal::level(0.0));
-    metal::float4 phase_1 = stream_phase_table.sample(linear_sampler_4, metal::float2(place_4.z, layer_5), metal::level(0.0));
+    metal::float4 logarithms = stream_table.sample(linear_sampler_4, metal::float3(place_6.xy, layer_5), metal::level(0.0));
+    metal::float4 phase_1 = stream_phase_table.sample(linear_sampler_4, metal::float2(place_6.z, layer_5), metal::level(0.0));
     return metal::exp(logarithms.xyz) * phase_1.xyz;
 }
 
 // Fog between the eye and a point, by the optical depth on the way: extinction times `exponential_column_m`, or the column of another profile. Rays end at the ground.
 // Cost: 23 exp, 7 reads.
 PathOptics tabulated_fog(
-    FogTableView view_10,
+    FogTableView view_14,
     metal::texture3d<float, metal::access::sample> diffuse_table,
     metal::texture3d<float, metal::access::sample> stream_table_1,
     metal::texture2d<float, metal::access::sample> stream_phase_table_1,
@@ -2372,22 +2474,22 @@ PathOptics tabulated_fog(
 ) {
     metal::float3 _e7 = fog_opacity(optical_depth_2);
     metal::float3 transmittance_3 = metal::exp(-(optical_depth_2));
-    float _e11 = azimuth_place(direction_12, view_10.sun);
+    float _e11 = azimuth_place(direction_12, view_14.sun);
     float _e13 = texel_coordinate(_e11, FOG_AZIMUTHS);
-    float _e14 = fog_row_coordinate(view_10, direction_12);
-    float _e16 = fog_distance_place(view_10, direction_12.y, _e7, transmittance_3);
+    float _e14 = fog_row_coordinate(view_14, direction_12);
+    float _e16 = fog_distance_place(view_14, direction_12.y, _e7, transmittance_3);
     float _e18 = texel_coordinate(_e16, FOG_DISTANCES);
     metal::float4 _e21 = diffuse_table.sample(linear_sampler_5, metal::float3(_e13, _e14, _e18), metal::level(0.0));
     metal::float3 diffuse = _e21.xyz;
-    float _e24 = one_minus_cos_between(direction_12, view_10.sun);
+    float _e24 = one_minus_cos_between(direction_12, view_14.sun);
     float _e25 = phase_place(_e24);
     float _e27 = texel_coordinate(_e25, PHASE_ANGLES);
-    metal::float3 place_9 = metal::float3(_e18, _e14, _e27);
-    metal::float3 _e30 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_5, place_9, 0.0);
-    metal::float3 _e32 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_5, place_9, 1.0);
-    metal::float3 _e35 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_5, place_9, 2.0);
+    metal::float3 place_10 = metal::float3(_e18, _e14, _e27);
+    metal::float3 _e30 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, 0.0);
+    metal::float3 _e32 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, 1.0);
+    metal::float3 _e35 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, 2.0);
     metal::float3 sunlit_2 = (_e30 + _e32) + _e35;
-    metal::float3 source_1 = (view_10.diffuse_scale * diffuse) + (view_10.sunlit_scale * metal::max(sunlit_2, metal::float3(0.0)));
+    metal::float3 source_1 = (view_14.diffuse_scale * diffuse) + (view_14.sunlit_scale * metal::max(sunlit_2, metal::float3(0.0)));
     return PathOptics {transmittance_3, _e7 * source_1};
 }
 
@@ -2438,13 +2540,13 @@ metal::float3 article_transmittance(
     metal::float3 sum_5 = metal::float3(0.0);
     int i_12 = 0;
     metal::float3 ds = (to_m_6 - from_m_8) / metal::float3(8.0);
-    bool loop_init_11 = true;
+    bool loop_init_12 = true;
     while(true) {
-        if (!loop_init_11) {
+        if (!loop_init_12) {
             int _e23 = i_12;
             i_12 = as_type<int>(as_type<uint>(_e23) + as_type<uint>(1));
         }
-        loop_init_11 = false;
+        loop_init_12 = false;
         int _e11 = i_12;
         if (_e11 < ARTICLE_STEPS) {
         } else {
@@ -2508,13 +2610,13 @@ ArticleSky article_sky(
 metal::float3 article_source(
     ArticleSky sky,
     metal::float3 position_7,
-    metal::float3 view_11,
+    metal::float3 view_15,
     metal::float3 sun_1
 ) {
     float _e5 = article_distance_m(position_7, sun_1, ARTICLE_TOP_RADIUS_M);
     metal::float3 leaves = position_7 + (sun_1 * _e5);
     metal::float3 _e8 = article_transmittance(position_7, leaves);
-    float mu_3 = metal::dot(view_11, sun_1);
+    float mu_3 = metal::dot(view_15, sun_1);
     metal::float3 _e10 = article_sigma_rayleigh(position_7);
     float _e11 = article_rayleigh_phase(mu_3);
     metal::float3 rayleigh = _e10 * _e11;
@@ -2528,22 +2630,22 @@ metal::float3 article_source(
 // Cost: 15 exp a step; 8 steps, in each of which two marches of 8 steps take 6 of these, 456 in all.
 metal::float3 article_luminance(
     ArticleSky sky_1,
-    metal::float3 view_12,
+    metal::float3 view_16,
     metal::float3 sun_2
 ) {
     metal::float3 sum_6 = metal::float3(0.0);
     int i_13 = 0;
-    float _e6 = article_distance_m(sky_1.eye, view_12, ARTICLE_TOP_RADIUS_M);
-    metal::float3 leaves_1 = sky_1.eye + (view_12 * _e6);
+    float _e6 = article_distance_m(sky_1.eye, view_16, ARTICLE_TOP_RADIUS_M);
+    metal::float3 leaves_1 = sky_1.eye + (view_16 * _e6);
     metal::float3 ds_1 = (leaves_1 - sky_1.eye) / metal::float3(8.0);
     metal::float3 direction_15 = ds_1 / metal::float3(metal::length(ds_1));
-    bool loop_init_12 = true;
+    bool loop_init_13 = true;
     while(true) {
-        if (!loop_init_12) {
+        if (!loop_init_13) {
             int _e38 = i_13;
             i_13 = as_type<int>(as_type<uint>(_e38) + as_type<uint>(1));
         }
-        loop_init_12 = false;
+        loop_init_13 = false;
         int _e22 = i_13;
         if (_e22 < ARTICLE_STEPS) {
         } else {
@@ -2566,13 +2668,13 @@ metal::float3 article_luminance(
 // Cost: 3 exp, 3 exp a step; 8 steps.
 metal::float3 article_disc(
     ArticleSky sky_2,
-    metal::float3 view_13,
+    metal::float3 view_17,
     metal::float3 sun_3
 ) {
-    float angle = metal::acos(metal::min(metal::dot(view_13, sun_3), 1.0));
+    float angle = metal::acos(metal::min(metal::dot(view_17, sun_3), 1.0));
     float disc = 1.0 - metal::smoothstep(0.95 * sky_2.sun_radius_rad, 1.05 * sky_2.sun_radius_rad, angle);
-    float _e19 = article_distance_m(sky_2.eye, view_13, ARTICLE_TOP_RADIUS_M);
-    metal::float3 leaves_2 = sky_2.eye + (view_13 * _e19);
+    float _e19 = article_distance_m(sky_2.eye, view_17, ARTICLE_TOP_RADIUS_M);
+    metal::float3 leaves_2 = sky_2.eye + (view_17 * _e19);
     metal::float3 _e25 = article_transmittance(sky_2.eye, leaves_2);
     return (sky_2.outer_space * disc) * _e25;
 }
@@ -2615,11 +2717,11 @@ float place_on_disc(
 // Part of a pixel that the disc covers, 0 to 1: a ramp as wide as a pixel across the edge, so that the edge is smooth and the disc's light is kept, within `(pixel / radius)^2 / 12`. `sin_pixel` is the sine of the angle that a pixel spans; 0 gives a sharp edge.
 // Cost: no exp.
 float disc_coverage(
-    float place_5,
+    float place_7,
     float sin_radius_1,
     float sin_pixel
 ) {
-    return metal::clamp(((1.0 - place_5) * (sin_radius_1 / metal::max(sin_pixel, 0.000001 * sin_radius_1))) + 0.5, 0.0, 1.0);
+    return metal::clamp(((1.0 - place_7) * (sin_radius_1 / metal::max(sin_pixel, 0.000001 * sin_radius_1))) + 0.5, 0.0, 1.0);
 }
 
 // Radiance of the sun's disc in a pixel whose centre is `one_minus_cos` from the sun, from the disc's mean radiance: the irradiance on a surface that faces the sun, divided by `pi sin_radius^2`. Without attenuation by air.
@@ -2719,8 +2821,8 @@ metal::float3 agx_response(
     metal::float3 x_4
 ) {
     metal::float3 stops = metal::log2(metal::max(x_4, metal::float3(0.000000001)) / metal::float3(0.18));
-    metal::float3 place_10 = metal::clamp((stops + metal::float3(10.0)) / metal::float3(16.5), metal::float3(0.0), metal::float3(1.0));
-    metal::float3 from_grey = place_10 - metal::float3(0.6060606);
+    metal::float3 place_11 = metal::clamp((stops + metal::float3(10.0)) / metal::float3(16.5), metal::float3(0.0), metal::float3(1.0));
+    metal::float3 from_grey = place_11 - metal::float3(0.6060606);
     metal::bool3 is_toe = from_grey < metal::float3(0.0);
     metal::float3 limit = metal::select(metal::float3(0.7151983), metal::float3(0.5656756), is_toe);
     metal::float3 u_2 = 2.4 * metal::abs(from_grey);

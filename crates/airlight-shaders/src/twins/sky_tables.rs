@@ -11,9 +11,9 @@ use std::f32::consts::{FRAC_1_PI, FRAC_2_PI, FRAC_PI_2, PI};
 /// Columns of a sky table, from the azimuth of the sun to the opposite one.
 pub const SKY_AZIMUTHS: f32 = 64.0;
 /// Rows of a sky table from the horizon to the highest elevation; they come first.
-pub const SKY_ROWS_ABOVE: f32 = 128.0;
+pub const SKY_ROWS_ABOVE: f32 = 125.0;
 /// Rows of a sky table from the horizon to the nadir.
-pub const SKY_ROWS_BELOW: f32 = 32.0;
+pub const SKY_ROWS_BELOW: f32 = 35.0;
 /// Columns of an aerial-perspective table.
 pub const AERIAL_AZIMUTHS: f32 = 32.0;
 /// Rows of an aerial-perspective table from the horizon to the highest elevation; they come first.
@@ -40,6 +40,16 @@ pub struct SkyView {
     pub horizon_rad: f32,
     /// Elevation above which a ray meets no air, rad.
     pub highest_rad: f32,
+    /// Elevation of the rays that graze the highest jump of density below the eye, rad; that of the horizon without one.
+    pub kink_rad: f32,
+    /// Place of the row at that elevation, 0 to 1.
+    pub kink_place: f32,
+    /// Part of the columns that is dense about an azimuth, where the planet's shadow crosses the limb.
+    pub dense_share: f32,
+    /// That azimuth from the sun, in half turns.
+    pub dense_azimuth: f32,
+    /// Width of the dense part, half turns.
+    pub dense_width: f32,
 }
 
 /// Factors from the normalised values in tables to radiance, at four wavelengths.
@@ -89,6 +99,66 @@ pub fn azimuth_place(direction: Vec3, sun: Vec3) -> f32 {
     across.atan2(along) * FRAC_1_PI
 }
 
+/// Place from 0 to 1 of an azimuth from the sun, in half turns, among the columns of a table:
+/// [`airlight::sky::TableCoordinates::column_place`].
+pub fn column_place(view: SkyView, azimuth: f32) -> f32 {
+    if view.dense_share == 0.0 {
+        return azimuth;
+    }
+    let dense = |azimuth: f32| ((azimuth - view.dense_azimuth) / view.dense_width).atan();
+    let place = (dense(azimuth) - dense(0.0)) / (dense(1.0) - dense(0.0));
+    azimuth + view.dense_share * (place - azimuth)
+}
+
+/// Inverse of [`column_place`], by bisection.
+pub fn azimuth_from_column_place(view: SkyView, place: f32) -> f32 {
+    if view.dense_share == 0.0 {
+        return place;
+    }
+    let (mut below, mut above) = (0.0, 1.0);
+    for _ in 0..24 {
+        let middle = 0.5 * (below + above);
+        match column_place(view, middle) < place {
+            true => below = middle,
+            false => above = middle,
+        }
+    }
+    0.5 * (below + above)
+}
+
+/// Place from 0 to 1 of an elevation among the rows above or below the horizon:
+/// [`airlight::sky::TableCoordinates::row_place`].
+pub fn row_place(view: SkyView, elevation_rad: f32, is_below: bool) -> f32 {
+    let part = |from: f32, to: f32| ((elevation_rad - from) / (to - from)).clamp(0.0, 1.0);
+    if is_below {
+        let root = part(view.horizon_rad, -FRAC_PI_2).sqrt().sqrt();
+        let linear_below = -view.horizon_rad.sin();
+        return root * (1.0 - linear_below + linear_below * root);
+    }
+    if elevation_rad < view.kink_rad {
+        let part = part(view.horizon_rad, view.kink_rad);
+        return view.kink_place * FRAC_2_PI * part.sqrt().atan2((1.0 - part).sqrt());
+    }
+    view.kink_place + (1.0 - view.kink_place) * part(view.kink_rad, view.highest_rad).sqrt()
+}
+
+/// Inverse of [`row_place`]: elevation of a place, rad.
+pub fn elevation_from_row_place(view: SkyView, place: f32, is_below: bool) -> f32 {
+    let between = |from: f32, to: f32, part: f32| from + (to - from) * part;
+    if is_below {
+        let linear_below = -view.horizon_rad.sin();
+        let even = 1.0 - linear_below;
+        let root = 2.0 * place / (even + (even * even + 4.0 * linear_below * place).sqrt());
+        return between(view.horizon_rad, -FRAC_PI_2, root.powi(4));
+    }
+    if place < view.kink_place {
+        let sine = (FRAC_PI_2 * place / view.kink_place).sin();
+        return between(view.horizon_rad, view.kink_rad, sine * sine);
+    }
+    let part = (place - view.kink_place) / (1.0 - view.kink_place);
+    between(view.kink_rad, view.highest_rad, part * part)
+}
+
 /// Texture coordinate of an elevation in a table with rows above and below the horizon.
 pub fn row_coordinate(
     view: SkyView,
@@ -97,16 +167,11 @@ pub fn row_coordinate(
     rows_above: f32,
     rows_below: f32,
 ) -> f32 {
-    let (end, rows, first) = match is_below {
-        true => (-FRAC_PI_2, rows_below, rows_above),
-        false => (view.highest_rad, rows_above, 0.0),
+    let (rows, first) = match is_below {
+        true => (rows_below, rows_above),
+        false => (rows_above, 0.0),
     };
-    let part = ((elevation_rad - view.horizon_rad) / (end - view.horizon_rad)).clamp(0.0, 1.0);
-    let place = if is_below {
-        part.sqrt().sqrt()
-    } else {
-        part.sqrt()
-    };
+    let place = row_place(view, elevation_rad, is_below);
     (first + 0.5 + place * (rows - 1.0)) / (rows_above + rows_below)
 }
 
@@ -119,14 +184,11 @@ pub fn elevation_from_row_coordinate(
 ) -> f32 {
     let row = coordinate * (rows_above + rows_below);
     let is_below = row >= rows_above;
-    let (end, rows, first) = match is_below {
-        true => (-FRAC_PI_2, rows_below, rows_above),
-        false => (view.highest_rad, rows_above, 0.0),
+    let (rows, first) = match is_below {
+        true => (rows_below, rows_above),
+        false => (rows_above, 0.0),
     };
-    let place = (row - first - 0.5) / (rows - 1.0);
-    let squared = place * place;
-    let part = if is_below { squared * squared } else { squared };
-    view.horizon_rad + (end - view.horizon_rad) * part
+    elevation_from_row_place(view, (row - first - 0.5) / (rows - 1.0), is_below)
 }
 
 /// Elevation of a direction, rad.
@@ -138,8 +200,9 @@ pub fn elevation_of(direction: Vec3) -> f32 {
 pub fn uv_from_direction(view: SkyView, direction: Vec3) -> Vec2 {
     let elevation_rad = elevation_of(direction);
     let is_below = elevation_rad < view.horizon_rad;
+    let azimuth = azimuth_place(direction, view.sun);
     Vec2::new(
-        texel_coordinate(azimuth_place(direction, view.sun), SKY_AZIMUTHS),
+        texel_coordinate(column_place(view, azimuth), SKY_AZIMUTHS),
         row_coordinate(
             view,
             elevation_rad,
@@ -272,8 +335,9 @@ pub fn aerial_perspective(
         AERIAL_ROWS_ABOVE,
         AERIAL_ROWS_BELOW,
     );
+    let azimuth = azimuth_place(direction, view.sun);
     let uvw = Vec3::new(
-        texel_coordinate(azimuth_place(direction, view.sun), AERIAL_AZIMUTHS),
+        texel_coordinate(column_place(view, azimuth), AERIAL_AZIMUTHS),
         row,
         texel_coordinate(place, AERIAL_DISTANCES),
     );

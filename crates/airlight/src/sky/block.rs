@@ -59,7 +59,8 @@ pub trait Block: Send + Sync {
     /// the ray and the sun.
     fn linear(&self, ray: &Ray, cos_azimuth: f64) -> [Vec<f32>; 2];
 
-    /// Light from the eye to each of the increasing distances `samples_m`, along each ray of a row: `[ray][sample]`.
+    /// Light from the eye to each of the increasing distances `samples_m`, along each ray of a row, and last the light of the whole ray
+    /// with its ground: `[ray][sample]`.
     fn samples_along_rays(
         &self,
         row: &TableRow,

@@ -20,11 +20,13 @@
 //! atmosphere), `polarised` (moments of its polarisation), `horizon` (light that forward peaks scatter at the horizon), `orders`
 //! (all orders of scattering), `horizontal_exchange`, `damping` and `mixing` (its corrections in thick air), `transport` (light scattered once
 //! more), `plane_parallel` (its direct solution in plane-parallel air), `ray_bundle` (rays that share their path), `trace` (light
-//! along one ray), `samples_along_rays` (light at many distances along rays), `table` (all directions of a view), `split` (its light in
+//! along one ray), `samples_along_rays` and `along_row` (light at many distances along rays of one elevation), `table` (all directions of a view),
+//! `table_coordinates` (where its rows and columns are dense), `split` (its light in
 //! two parts that vary slowly, for tables), `stokes` (its
 //! polarisation).
 
 mod air;
+mod along_row;
 mod batch;
 mod block;
 mod coverage;
@@ -48,11 +50,13 @@ mod solver;
 mod split;
 mod stokes;
 mod table;
+mod table_coordinates;
 mod tabulate;
 mod trace;
 mod transport;
 mod view;
 
+pub use along_row::{RowPath, RowRay};
 pub use coverage::SunCoverage;
 pub use light_source::LightSource;
 pub(crate) use peaked::Peaked;
@@ -62,5 +66,6 @@ pub use solver::Sky;
 pub use split::{SplitLight, SplitPath, SplitView};
 pub use stokes::{PolarisationTable, PolarisedLight};
 pub use table::{SkyColumns, SkyTable, TableChannels};
+pub use table_coordinates::TableCoordinates;
 pub(crate) use tabulate::channel_weights;
 pub use view::{LineOfSight, View};

@@ -10,7 +10,7 @@
 //!
 //! without cancellation and without a separate march for each sample, for each stream of singly scattered sunlight and for all
 //! other light. As S is linear in P and L', it can be stored by scatterer and without phase functions, as in the sky's
-//! tables.
+//! tables. L' itself is the radiance of the whole ray, ground included.
 
 use super::field::ground_irradiance;
 use super::ray_bundle::{Path, RayBundle, Scratch};
@@ -36,7 +36,8 @@ const NODES: usize = 3;
 
 impl<const N: usize> Tracer<'_, N> {
     /// Light from the eye to each of the increasing distances `samples_m`, which are clamped to the end of the rays, along each ray of a
-    /// bundle with this start (radius, m, and cosine of the zenith angle): `[ray][sample]`.
+    /// bundle with this start (radius, m, and cosine of the zenith angle), and last the light of the whole ray with its ground:
+    /// `[ray][sample]`.
     #[inline(always)]
     pub fn samples_along_rays(
         &self,
@@ -95,9 +96,11 @@ impl<const N: usize> Tracer<'_, N> {
         let of_ray = |ray: usize| {
             let columns = pieces[1..].iter().map(|(columns_m, _)| columns_m);
             let samples = columns.zip(&light);
-            samples
-                .map(|(columns_m, light)| self.sample(columns_m, &light[ray], &whole[ray]))
-                .collect()
+            let samples =
+                samples.map(|(columns_m, light)| self.sample(columns_m, &light[ray], &whole[ray]));
+            let (columns_m, _) = &pieces[samples_m.len()];
+            let all = self.sample(columns_m, &whole[ray], &whole[ray]);
+            samples.chain([all]).collect()
         };
         (0..bundle.len()).map(of_ray).collect()
     }

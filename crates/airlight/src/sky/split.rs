@@ -147,7 +147,7 @@ impl SplitView {
         let along = |(direction, samples): (&DVec3, Vec<SampleLight>)| {
             let cos_angle = direction.dot(self.view.sun());
             let phases = peaked.phases(half_sine(cos_angle));
-            let converted = samples.into_iter().map(|sample| {
+            let converted = samples.into_iter().take(distances_m.len()).map(|sample| {
                 let mut parts = Vec::new();
                 for (part, values) in peaked.parts.iter().zip(&sample.path[1..]) {
                     let without = lit(values).into_iter().enumerate();

@@ -1,10 +1,12 @@
 //! Tables of a view's radiance in all directions, for look-up by pixels.
 //!
-//! There are two tables, above and below the horizon, where radiance jumps. Their rows are denser towards it, at the square
-//! of a uniform coordinate, and interpolated with cubics. What varies fast is not tabulated: light singly scattered by a
-//! constituent with a peaked phase function is stored without the phase function, which is applied for each pixel.
+//! There are tables above and below the horizon, where radiance jumps; the one above it is divided where a ray grazes a jump of
+//! density. Their rows and columns have the places of [`TableCoordinates`], and are interpolated with cubics. What varies fast is not
+//! tabulated: light singly scattered by a constituent with a peaked phase function is stored without the phase function, which is
+//! applied for each pixel.
 
 use super::peaked::Peaked;
+use super::table_coordinates::TableCoordinates;
 use crate::debug::debug_fields;
 use crate::math::arctangent::arctangent;
 use crate::math::interpolation::{cubic_f32, cubic_mirrored};
@@ -14,7 +16,7 @@ use crate::math::simd::vectorized;
 use crate::math::slices::check_length;
 use crate::spectrum::RgbSpace;
 use glam::DVec3;
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Channels of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,11 +28,11 @@ pub enum TableChannels {
 }
 
 /// Number of azimuth steps from that of the sun to the opposite one.
-pub(super) const AZIMUTHS: usize = 64;
-/// Number of rows from the horizon to the zenith.
-pub(super) const ROWS_ABOVE: usize = 128;
-/// Number of rows from the horizon to the nadir.
-pub(super) const ROWS_BELOW: usize = 96;
+pub(super) const AZIMUTHS: usize = 63;
+/// Number of steps between rows from the horizon to the zenith.
+pub(super) const STEPS_ABOVE: usize = 4 * TableCoordinates::ROW_STEPS;
+/// Number of steps between rows from the horizon to the nadir.
+pub(super) const STEPS_BELOW: usize = 95;
 
 /// Number of directions that are looked up together.
 const TOGETHER: usize = 64;
@@ -47,19 +49,21 @@ pub struct SkyTable {
     pub(super) width: usize,
     pub(super) sun: DVec3,
     pub(super) sun_azimuth: DVec3,
-    pub(super) horizon_elevation: f64,
-    pub(super) above: Half,
-    pub(super) below: Half,
+    pub(super) coordinates: TableCoordinates,
+    /// From the kink to the highest air, from the horizon to the kink if there is one, and below the horizon.
+    pub(super) above: Band,
+    pub(super) below_kink: Option<Band>,
+    pub(super) below: Band,
     /// Phase functions of peaked scatterers.
     pub(super) peaked: Peaked,
 }
 
-debug_fields! { SkyTable { channels, sun, horizon_elevation } }
+debug_fields! { SkyTable { channels, sun, coordinates } }
 
-/// The table on one side of the horizon.
-pub(super) struct Half {
-    /// Signed angle from the horizon to the last row, rad.
-    pub(super) span: f64,
+/// The table between two elevations at which light bends or jumps.
+pub(super) struct Band {
+    /// Places of the first and of the last row.
+    pub(super) places: [f64; 2],
     pub(super) rows: usize,
     /// `[row][azimuth][channel of each part]`.
     pub(super) values: Vec<f32>,
@@ -83,8 +87,8 @@ struct Column {
 struct Angles<const N: usize> {
     /// Elevations, rad.
     elevations: [f64; N],
-    /// Azimuths from that of the sun, to either side; 1 is the opposite one.
-    azimuths: [f64; N],
+    /// Places of the azimuths from that of the sun, to either side; 1 is the opposite one.
+    columns: [f64; N],
     /// Sines of half the angle to the sun.
     half_sines: [f64; N],
 }
@@ -97,7 +101,12 @@ impl SkyTable {
 
     /// Elevation of the horizon, rad: 0 on the ground, negative above it.
     pub fn horizon_elevation_rad(&self) -> f64 {
-        self.horizon_elevation
+        self.coordinates.horizon_rad
+    }
+
+    /// Places of rows and columns.
+    pub fn coordinates(&self) -> &TableCoordinates {
+        &self.coordinates
     }
 
     /// Evaluates the radiance along the unit vector `direction` into `out`, one value per channel.
@@ -160,14 +169,15 @@ impl SkyTable {
         } = self.sun_azimuth;
         let mut angles = Angles {
             elevations: [0.0; N],
-            azimuths: [0.0; N],
+            columns: [0.0; N],
             half_sines: [0.0; N],
         };
         for (i, &DVec3 { x, y, z }) in directions.iter().enumerate() {
             let horizontal = (x * x + z * z).sqrt();
             let (along, across) = (x * sun_x + z * sun_z, x * sun_z - z * sun_x);
             angles.elevations[i] = arctangent(y, horizontal, (x * x + y * y + z * z).sqrt());
-            angles.azimuths[i] = arctangent(across.abs(), along, horizontal) / PI;
+            let azimuth = arctangent(across.abs(), along, horizontal) / PI;
+            angles.columns[i] = self.coordinates.column_place(azimuth);
             let [x, y, z] = [x - self.sun.x, y - self.sun.y, z - self.sun.z];
             angles.half_sines[i] = 0.5 * (x * x + y * y + z * z).sqrt();
         }
@@ -178,7 +188,7 @@ impl SkyTable {
     #[inline(always)]
     fn look_up_cells<const N: usize>(&self, angles: &Angles<N>, cell: &mut [f32], out: &mut [f32]) {
         for (i, out) in out.chunks_exact_mut(self.channels).enumerate() {
-            if self.interpolate(angles.elevations[i], angles.azimuths[i], cell) {
+            if self.interpolate(angles.elevations[i], angles.columns[i], cell) {
                 self.combine(cell, angles.half_sines[i], out);
             } else {
                 out.fill(0.0);
@@ -191,11 +201,11 @@ impl SkyTable {
     pub(super) fn parts(&self, direction: DVec3) -> Vec<f32> {
         let Angles {
             elevations: [elevation],
-            azimuths: [azimuth],
+            columns: [column],
             ..
         } = self.angles(&[direction]);
         let mut cell = vec![0.0; self.width];
-        self.interpolate(elevation, azimuth, &mut cell);
+        self.interpolate(elevation, column, &mut cell);
         cell
     }
 
@@ -204,7 +214,8 @@ impl SkyTable {
         let columns = azimuths_rad
             .map(|azimuth| {
                 let (sin, cos) = azimuth.sin_cos();
-                let (nodes, weights) = cubic_mirrored(sin.abs().atan2(cos) / PI, AZIMUTHS);
+                let place = self.coordinates.column_place(sin.abs().atan2(cos) / PI);
+                let (nodes, weights) = cubic_mirrored(place, AZIMUTHS);
                 Column {
                     nodes,
                     weights,
@@ -217,14 +228,14 @@ impl SkyTable {
 
     /// Evaluates the radiance at one elevation (rad) in all prepared columns into `out`, one value per channel and column.
     pub fn sample_row(&self, elevation_rad: f64, columns: &SkyColumns, out: &mut [f32]) {
-        let Some((half, row)) = self.place(elevation_rad) else {
+        let Some((band, row)) = self.place(elevation_rad) else {
             out.fill(0.0);
             return;
         };
         vectorized(
             #[inline(always)]
             || {
-                let line = self.line(half, row);
+                let line = self.line(band, row);
                 let row = (&line[..], elevation_rad);
                 match self.width {
                     4 => self.cells(row, columns, &mut [0.0; 4], out),
@@ -238,12 +249,12 @@ impl SkyTable {
 
     /// Interpolates the table to a row coordinate: the cells of all azimuths.
     #[inline(always)]
-    fn line(&self, half: &Half, row: f64) -> Vec<f32> {
+    fn line(&self, band: &Band, row: f64) -> Vec<f32> {
         let stride = (AZIMUTHS + 1) * self.width;
-        let (first, weights) = cubic_f32(row, half.rows);
+        let (first, weights) = cubic_f32(row, band.rows);
         let mut line = vec![0.0f32; stride];
         for (i, w) in weights.iter().enumerate() {
-            let values = &half.values[(first + i) * stride..][..stride];
+            let values = &band.values[(first + i) * stride..][..stride];
             for (sum, value) in line.iter_mut().zip(values) {
                 *sum += w * value;
             }
@@ -304,16 +315,21 @@ impl SkyTable {
         let rule = GaussRule::new(48);
         let mut sums = vec![0.0f64; out.len()];
         let mut radiance = vec![0.0f32; AZIMUTH_SAMPLES * self.channels];
-        for half in [&self.above, &self.below] {
+        let TableCoordinates {
+            horizon_rad,
+            highest_rad,
+            ..
+        } = self.coordinates;
+        for span in [highest_rad - horizon_rad, -FRAC_PI_2 - horizon_rad] {
             for (x, w) in rule.on(0.0, 1.0) {
-                let elevation = self.horizon_elevation + half.span * x * x;
+                let elevation = horizon_rad + span * x * x;
                 let (sin, cos) = elevation.sin_cos();
                 let reaches = |n: &DVec3| sin * n.y + cos * n.x.hypot(n.z) > 0.0;
                 if !normals.iter().any(reaches) {
                     continue;
                 }
                 let solid_angle =
-                    w * 2.0 * x * half.span.abs() * cos * 2.0 * PI / AZIMUTH_SAMPLES as f64;
+                    w * 2.0 * x * span.abs() * cos * 2.0 * PI / AZIMUTH_SAMPLES as f64;
                 let ring: [DVec3; AZIMUTH_SAMPLES] = std::array::from_fn(|k| {
                     let (z, x) = (2.0 * PI * (k as f64 + 0.5) / AZIMUTH_SAMPLES as f64).sin_cos();
                     DVec3::new(cos * x, sin, cos * z)
@@ -338,31 +354,37 @@ impl SkyTable {
         }
     }
 
-    /// The half of the table that contains an elevation, and the row coordinate in `[0, 1]`; `None` above the atmosphere's limb.
+    /// The band of the table that contains an elevation, and the row coordinate in `[0, 1]`; `None` above the atmosphere's limb.
     #[inline(always)]
-    fn place(&self, elevation: f64) -> Option<(&Half, f64)> {
-        let half = if elevation >= self.horizon_elevation {
-            &self.above
-        } else {
-            &self.below
+    fn place(&self, elevation: f64) -> Option<(&Band, f64)> {
+        let of = &self.coordinates;
+        let is_below = elevation < of.horizon_rad;
+        let beyond = (elevation - of.horizon_rad) / (of.highest_rad - of.horizon_rad);
+        if beyond > 1.0 + 1e-12 {
+            return None;
+        }
+        let band = match &self.below_kink {
+            _ if is_below => &self.below,
+            Some(band) if elevation < of.kink_rad => band,
+            _ => &self.above,
         };
-        let depth = (elevation - self.horizon_elevation) / half.span;
-        (depth <= 1.0 + 1e-12).then(|| (half, depth.clamp(0.0, 1.0).sqrt()))
+        let [first, last] = band.places;
+        let row = (of.row_place(elevation, is_below) - first) / (last - first);
+        Some((band, row.clamp(0.0, 1.0)))
     }
 
-    /// Interpolates all values of a cell at an elevation (rad) and an azimuth from the sun's (1 is the opposite one); false
-    /// above the atmosphere's limb.
+    /// Interpolates all values of a cell at an elevation (rad) and the place of a column; false above the atmosphere's limb.
     #[inline(always)]
-    fn interpolate(&self, elevation: f64, azimuth: f64, cell: &mut [f32]) -> bool {
-        let Some((half, row)) = self.place(elevation) else {
+    fn interpolate(&self, elevation: f64, column: f64, cell: &mut [f32]) -> bool {
+        let Some((band, row)) = self.place(elevation) else {
             return false;
         };
         let width = cell.len();
-        let (columns, column_weights) = cubic_mirrored(azimuth, AZIMUTHS);
-        let (first_row, row_weights) = cubic_f32(row, half.rows);
+        let (columns, column_weights) = cubic_mirrored(column, AZIMUTHS);
+        let (first_row, row_weights) = cubic_f32(row, band.rows);
         let stride = (AZIMUTHS + 1) * width;
         let rows: [&[f32]; 4] =
-            std::array::from_fn(|i| &half.values[(first_row + i) * stride..][..stride]);
+            std::array::from_fn(|i| &band.values[(first_row + i) * stride..][..stride]);
         // Groups of four values stay in a register over all sixteen cells.
         let (groups, _) = cell.as_chunks_mut::<4>();
         for (group, sums) in groups.iter_mut().enumerate() {

@@ -3,13 +3,14 @@
 use super::block::{ChannelMatrix, TableRow};
 use super::peaked::{Peaked, Scattered};
 use super::ray_bundle::RayBundle;
-use super::table::{AZIMUTHS, Half, ROWS_ABOVE, ROWS_BELOW, SkyTable, TableChannels};
+use super::table::{AZIMUTHS, Band, STEPS_ABOVE, STEPS_BELOW, SkyTable, TableChannels};
+use super::table_coordinates::TableCoordinates;
 use super::view::View;
 use crate::atmosphere::Constituent;
 use crate::control::{Cancelled, Control};
 use crate::spectrum::{WavelengthGrid, rgb};
 use glam::DVec3;
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 impl View {
     /// Tabulates the radiance in all directions.
@@ -34,28 +35,38 @@ impl View {
 impl SkyTable {
     fn new(view: &View, channels: TableChannels, control: Control<'_>) -> Result<Self, Cancelled> {
         let sky = view.sky();
-        let shell = sky.shell();
-        let radius_m = view.radius_m();
-        let horizon_elevation = view.horizon_elevation_rad();
-        // From the top of the atmosphere and outside nothing is visible above its limb.
-        let highest_elevation = if radius_m >= shell.top_radius_m {
-            -(shell.top_radius_m / radius_m).acos()
-        } else {
-            FRAC_PI_2
-        };
+        let coordinates = view.table_coordinates();
         let matrices = channel_matrices(view, channels);
         let channel_count = matrices[0].weights.len();
         let peaked = Peaked::of(view, channel_count, |spectrum| {
             in_channels(&matrices, spectrum)
         });
         let width = (channel_count * (1 + peaked.parts.len())).next_multiple_of(4);
-        let half = |span: f64, rows: usize| {
-            let table_rows = half_rows(view, horizon_elevation, span, rows);
+        let band = |places: [f64; 2], steps: usize, is_below: bool| {
+            let rows = steps + 1;
+            let elevations = (0..rows).map(|row| {
+                let part = row as f64 / steps as f64;
+                let place = places[0] + (places[1] - places[0]) * part;
+                coordinates.elevation_rad(place, is_below)
+            });
+            let table_rows: Vec<TableRow> = elevations
+                .map(|elevation_rad| table_row(view, elevation_rad, &coordinates))
+                .collect();
             let mut values = vec![0.0; rows * (AZIMUTHS + 1) * width];
             for (block, matrix) in sky.blocks().iter().zip(&matrices) {
                 block.fill(&table_rows, matrix, &peaked, width, &mut values, control)?;
             }
-            Ok(Half { span, rows, values })
+            Ok(Band {
+                places,
+                rows,
+                values,
+            })
+        };
+        let kink = coordinates.kink_place;
+        let steps_below_kink = (kink * STEPS_ABOVE as f64).round() as usize;
+        let below_kink = match steps_below_kink {
+            0 => None,
+            steps => Some(band([0.0, kink], steps, false)?),
         };
         let horizontal = DVec3::new(view.sun().x, 0.0, view.sun().z);
         Ok(Self {
@@ -68,9 +79,10 @@ impl SkyTable {
             } else {
                 DVec3::X
             },
-            horizon_elevation,
-            above: half(highest_elevation - horizon_elevation, ROWS_ABOVE)?,
-            below: half(-FRAC_PI_2 - horizon_elevation, ROWS_BELOW)?,
+            above: band([kink, 1.0], STEPS_ABOVE - steps_below_kink, false)?,
+            below_kink,
+            below: band([0.0, 1.0], STEPS_BELOW, true)?,
+            coordinates,
             peaked,
         })
     }
@@ -116,29 +128,24 @@ impl Peaked {
     }
 }
 
-/// Rays of one half of the table.
-fn half_rows(view: &View, horizon: f64, span: f64, rows: usize) -> Vec<TableRow> {
+/// Rays of one row of the table.
+fn table_row(view: &View, elevation_rad: f64, coordinates: &TableCoordinates) -> TableRow {
     let mu_sun = view.ray(view.sun()).mu;
     let sin_sun = ((1.0 - mu_sun) * (1.0 + mu_sun)).max(0.0).sqrt();
-    (0..rows)
-        .map(|row| {
-            let x = row as f64 / (rows - 1) as f64;
-            // Radiance jumps at the horizon: start slightly off it.
-            let (mu, cos_elevation) = (horizon + span * (x * x).max(1e-9)).sin_cos();
-            let mut bundle = RayBundle::default();
-            for azimuth in 0..=AZIMUTHS {
-                let cos_azimuth = (PI * azimuth as f64 / AZIMUTHS as f64).cos();
-                bundle.push(
-                    mu_sun,
-                    (mu * mu_sun + cos_elevation * sin_sun * cos_azimuth).clamp(-1.0, 1.0),
-                );
-            }
-            TableRow {
-                start: (view.radius_m(), mu),
-                bundle,
-            }
-        })
-        .collect()
+    let (mu, cos_elevation) = elevation_rad.sin_cos();
+    let mut bundle = RayBundle::default();
+    for column in 0..=AZIMUTHS {
+        let azimuth = coordinates.azimuth(column as f64 / AZIMUTHS as f64);
+        let cos_azimuth = (PI * azimuth).cos();
+        bundle.push(
+            mu_sun,
+            (mu * mu_sun + cos_elevation * sin_sun * cos_azimuth).clamp(-1.0, 1.0),
+        );
+    }
+    TableRow {
+        start: (view.radius_m(), mu),
+        bundle,
+    }
 }
 
 /// For each channel, the weights of the wavelengths, for radiance divided by the solar irradiance `solar`.

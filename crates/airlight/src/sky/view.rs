@@ -202,7 +202,8 @@ impl View {
 
     /// Light from the eye to each of the increasing distances `samples_m` along unit vectors of one elevation, `[direction][sample]`:
     /// optical depths, one per wavelength, and path radiance per unit solar irradiance, first the smooth light and then each part
-    /// without its share. Wavelengths whose indices are not in `used` may be left at 0.
+    /// without its share. The last sample is the light of the whole ray, with its ground. Wavelengths whose indices are not in `used` may be
+    /// left at 0.
     pub(crate) fn samples_along_rays(
         &self,
         directions: &[DVec3],
@@ -225,7 +226,7 @@ impl View {
             depth: Vec::new(),
             path: vec![Vec::new(); 1 + parts.len()],
         };
-        let mut all = vec![vec![nothing; samples_m.len()]; rays.len()];
+        let mut all = vec![vec![nothing; samples_m.len() + 1]; rays.len()];
         let mut first = 0;
         for block in self.sky.blocks() {
             let lanes = first..first + block.lanes();

@@ -11,7 +11,8 @@ use glam::Vec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 flat_struct! {
-    twins::sky_tables::SkyView { sun, height_m, ground_radius_m, air_height_m, horizon_rad, highest_rad }
+    twins::sky_tables::SkyView { sun, height_m, ground_radius_m, air_height_m, horizon_rad, highest_rad, kink_rad, kink_place,
+        dense_share, dense_azimuth, dense_width }
     twins::sky_tables::SkyScales { smooth_light, haze }
     twins::sky_tables::SpectralPath { transmittance, path_radiance }
 }
@@ -36,8 +37,32 @@ fn view(r: &mut Random) -> Vec<f32> {
         horizon as f32,
         highest as f32,
     ]);
+    // A jump of density below the eye, and a limb that the planet's shadow crosses.
+    let (kink_rad, kink_place) = match r.one_of(&[0.0, 1.0]) {
+        0.0 => (horizon as f32, 0.0),
+        _ => {
+            let part = f64::from(r.between(0.01, 0.9));
+            let kink = horizon + (highest - horizon) * part;
+            (kink as f32, r.one_of(&[8.0, 20.0]) / 31.0)
+        }
+    };
+    let share = if height_m > 1e4 {
+        r.or(&[0.6], Random::unit)
+    } else {
+        0.0
+    };
+    all.extend([
+        kink_rad,
+        kink_place,
+        share,
+        r.or(&[0.0, 1.0], Random::unit),
+        r.or(&[0.05, 10.0], |r| r.decades(0.05, 10.0)),
+    ]);
     all
 }
+
+/// Number of numbers of a view.
+const VIEW: usize = 13;
 
 /// A view and a direction, which is not at the horizon or the limb, where radiance jumps.
 fn view_and_direction(r: &mut Random) -> Vec<f32> {
@@ -77,33 +102,76 @@ pub fn elevation(direction: &[f64]) -> f64 {
     direction[1].atan2(direction[0].hypot(direction[2]))
 }
 
+fn column(view: &[f64], azimuth: f64) -> f64 {
+    let [share, centre, width] = [view[10], view[11], view[12]];
+    let dense = |azimuth: f64| ((azimuth - centre) / width).atan();
+    (1.0 - share) * azimuth + share * (dense(azimuth) - dense(0.0)) / (dense(1.0) - dense(0.0))
+}
+
+/// Where an increasing function has a value.
+fn inverse(function: impl Fn(f64) -> f64, value: f64) -> f64 {
+    let (mut below, mut above) = (0.0, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (below + above);
+        match function(middle) < value {
+            true => below = middle,
+            false => above = middle,
+        }
+    }
+    0.5 * (below + above)
+}
+
+fn place(view: &[f64], elevation: f64, below: bool) -> f64 {
+    let [horizon, highest, kink, kink_place] = [view[6], view[7], view[8], view[9]];
+    let part = |from: f64, to: f64| ((elevation - from) / (to - from)).clamp(0.0, 1.0);
+    if below {
+        let part = part(horizon, -FRAC_PI_2);
+        let space = -horizon.sin();
+        (1.0 - space) * part.powf(0.25) + space * part.powf(0.5)
+    } else if elevation < kink {
+        kink_place * (1.0 - 2.0 * part(horizon, kink)).acos() / PI
+    } else {
+        kink_place + (1.0 - kink_place) * part(kink, highest).sqrt()
+    }
+}
+
+fn elevation_of_place(view: &[f64], value: f64, below: bool) -> f64 {
+    let (horizon, end) = (view[6], if below { -FRAC_PI_2 } else { view[7] });
+    // Of the fourth root of the part, which is even near the horizon.
+    let root = inverse(
+        |root| place(view, horizon + (end - horizon) * root.powi(4), below),
+        value,
+    );
+    horizon + (end - horizon) * root.powi(4)
+}
+
 fn row(view: &[f64], elevation: f64, below: bool, rows: [f64; 2]) -> f64 {
-    let (end, count, first) = match below {
-        true => (-FRAC_PI_2, rows[1], rows[0]),
-        false => (view[7], rows[0], 0.0),
+    let (count, first) = if below {
+        (rows[1], rows[0])
+    } else {
+        (rows[0], 0.0)
     };
-    let part = ((elevation - view[6]) / (end - view[6])).clamp(0.0, 1.0);
-    let power = if below { 0.25 } else { 0.5 };
-    (first + 0.5 + part.powf(power) * (count - 1.0)) / (rows[0] + rows[1])
+    (first + 0.5 + place(view, elevation, below) * (count - 1.0)) / (rows[0] + rows[1])
 }
 
 fn elevation_of_row(view: &[f64], coordinate: f64, rows: [f64; 2]) -> f64 {
     let row = coordinate * (rows[0] + rows[1]);
-    let (end, count, first) = match row >= rows[0] {
-        true => (-FRAC_PI_2, rows[1], rows[0]),
-        false => (view[7], rows[0], 0.0),
+    let below = row >= rows[0];
+    let (count, first) = if below {
+        (rows[1], rows[0])
+    } else {
+        (rows[0], 0.0)
     };
-    let power = if row >= rows[0] { 4 } else { 2 };
-    view[6] + (end - view[6]) * ((row - first - 0.5) / (count - 1.0)).powi(power)
+    elevation_of_place(view, (row - first - 0.5) / (count - 1.0), below)
 }
 
-const SKY_ROWS: [f64; 2] = [128.0, 32.0];
+const SKY_ROWS: [f64; 2] = [125.0, 35.0];
 const AERIAL_ROWS: [f64; 2] = [32.0, 32.0];
 
 fn uv(view: &[f64], direction: &[f64]) -> [f64; 2] {
     let elevation = elevation(direction);
     let v = row(view, elevation, elevation < view[6], SKY_ROWS);
-    [texel(azimuth(direction, view), 64.0), v]
+    [texel(column(view, azimuth(direction, view)), 64.0), v]
 }
 
 /// Distances at which a ray enters and leaves the air, from the two spheres.
@@ -178,7 +246,7 @@ fn light(dimension: u32, uvw: [f64; 3], scales: &[f64], phase: [f64; 4]) -> [f64
 }
 
 fn sky(x: &[f64]) -> Vec<f64> {
-    let (view, scales, direction) = (&x[..8], &x[8..16], &x[16..19]);
+    let (view, scales, direction) = (&x[..VIEW], &x[VIEW..][..8], &x[VIEW + 8..]);
     if elevation(direction) > view[7] {
         return vec![0.0; 4];
     }
@@ -188,7 +256,8 @@ fn sky(x: &[f64]) -> Vec<f64> {
 }
 
 fn aerial(x: &[f64]) -> Vec<f64> {
-    let (view, scales, direction, distance_m) = (&x[..8], &x[8..16], &x[16..19], x[19]);
+    let (view, scales) = (&x[..VIEW], &x[VIEW..][..8]);
+    let (direction, distance_m) = (&x[VIEW + 8..][..3], x[VIEW + 11]);
     let elevation = elevation(direction);
     let below = elevation < view[6];
     let [start, end] = span(view, direction[1], below);
@@ -199,7 +268,7 @@ fn aerial(x: &[f64]) -> Vec<f64> {
     let place = (length / (end - start)).clamp(0.0, 1.0).sqrt();
     let w = texel(place, 32.0);
     let v = row(view, elevation, below, AERIAL_ROWS);
-    let u = texel(azimuth(direction, view), 32.0);
+    let u = texel(column(view, azimuth(direction, view)), 32.0);
     let phase = haze_phase(one_minus_cos(direction, view));
     let depth = sample("extinction_table_2d", [w, v, 0.5]).map(|e| e * length * 1e-3);
     let source = light(3, [u, v, w], scales, phase);
@@ -260,41 +329,58 @@ pub fn sky_tables() -> Vec<Row> {
             => |x| vec![(x[0] * x[1] - 0.5) / (x[1] - 1.0)];
         azimuth_place: |r| [r.direction(), r.direction()].concat()
             => |x| vec![azimuth(&x[..3], &x[3..])];
+        column_place: |r| [view(r), vec![r.or(&[0.0, 1.0], Random::unit)]].concat()
+            => |x| vec![column(x, x[VIEW])];
+        azimuth_from_column_place: |r| [view(r), vec![r.or(&[0.0, 1.0], Random::unit)]].concat()
+            => |x| vec![inverse(|azimuth| column(x, azimuth), x[VIEW])];
+        row_place: |r| {
+            let mut all = view_and_direction(r);
+            let elevation = all[VIEW + 1].clamp(-1.0, 1.0).asin();
+            all.truncate(VIEW);
+            let below = elevation < all[6];
+            all.extend([elevation, f32::from(below)]);
+            all
+        } => |x| vec![place(x, x[VIEW], x[VIEW + 1] != 0.0)];
+        elevation_from_row_place: |r| {
+            let mut all = view(r);
+            all.extend([r.or(&[0.0, 1.0], Random::unit), r.one_of(&[0.0, 1.0])]);
+            all
+        } => |x| vec![elevation_of_place(x, x[VIEW], x[VIEW + 1] != 0.0)];
         row_coordinate: |r| {
             let mut all = view_and_direction(r);
-            let elevation = all[9].clamp(-1.0, 1.0).asin();
+            let elevation = all[VIEW + 1].clamp(-1.0, 1.0).asin();
             let below = elevation < all[6];
-            all.truncate(8);
+            all.truncate(VIEW);
             all.extend([elevation, f32::from(below), 64.0, 32.0]);
             all
-        } => |x| vec![row(x, x[8], x[9] != 0.0, [x[10], x[11]])];
+        } => |x| vec![row(x, x[VIEW], x[VIEW + 1] != 0.0, [x[VIEW + 2], x[VIEW + 3]])];
         elevation_from_row_coordinate: |r| {
             let mut all = view(r);
             // A texel's centre, as rows from different halves do not mix.
             let row = (r.unit() * 96.0).floor();
             all.extend([(row + 0.5) / 96.0, 64.0, 32.0]);
             all
-        } => |x| vec![elevation_of_row(x, x[8], [x[9], x[10]])];
+        } => |x| vec![elevation_of_row(x, x[VIEW], [x[VIEW + 1], x[VIEW + 2]])];
         elevation_of: |r| r.direction().to_vec() => |x| vec![elevation(x)];
-        uv_from_direction: view_and_direction => |x| uv(x, &x[8..]).to_vec();
+        uv_from_direction: view_and_direction => |x| uv(x, &x[VIEW..]).to_vec();
         direction_from_azimuth_elevation: |r| {
             let mut all = view(r);
             all.extend([r.or(&[0.0, 1.0], Random::unit), r.or(&[0.0, 1.57], |r| r.between(-1.57, 1.57))]);
             all
         } => |x| {
             let sun = if x[0].abs() + x[2].abs() < 1e-9 { 0.0 } else { x[2].atan2(x[0]) };
-            let (turn, cos) = (sun + PI * x[8], x[9].cos());
-            vec![turn.cos() * cos, x[9].sin(), turn.sin() * cos]
+            let (turn, cos) = (sun + PI * x[VIEW], x[VIEW + 1].cos());
+            vec![turn.cos() * cos, x[VIEW + 1].sin(), turn.sin() * cos]
         };
         air_span_m: |r| {
             let mut all = view_and_direction(r);
             // From space, rays that meet the air.
-            let elevation = all[9].clamp(-1.0, 1.0).asin().min(all[7] - 1e-3);
+            let elevation = all[VIEW + 1].clamp(-1.0, 1.0).asin().min(all[7] - 1e-3);
             let below = elevation < all[6];
-            all.truncate(8);
+            all.truncate(VIEW);
             all.extend([elevation.sin(), f32::from(below)]);
             all
-        } => |x| span(x, x[8], x[9] != 0.0).to_vec();
+        } => |x| span(x, x[VIEW], x[VIEW + 1] != 0.0).to_vec();
         place_from_part: |r| vec![r.or(&[0.0, 1.0], Random::unit)] => |x| vec![x[0].sqrt()];
         part_from_place: |r| vec![r.or(&[0.0, 1.0], Random::unit)] => |x| vec![x[0] * x[0]];
         phase_place: |r| vec![r.one_minus_cos()] => |x| vec![place_of_phase(x[0])];
@@ -312,7 +398,7 @@ pub fn sky_tables() -> Vec<Row> {
                 "haze_phase" => |r| vec![r.one_minus_cos()],
                 "sky_radiance" => |r| {
                     let mut all = view_and_direction(r);
-                    let direction = all.split_off(8);
+                    let direction = all.split_off(VIEW);
                     [all, scales(r), direction].concat()
                 },
                 "aerial_transmittance" => |r| {
@@ -322,7 +408,7 @@ pub fn sky_tables() -> Vec<Row> {
                 },
                 _ => |r| {
                     let mut all = view_and_direction(r);
-                    let direction = all.split_off(8);
+                    let direction = all.split_off(VIEW);
                     [all, scales(r), direction, vec![r.length_m()]].concat()
                 },
             },
@@ -331,7 +417,7 @@ pub fn sky_tables() -> Vec<Row> {
                 "sky_radiance" => Box::new(sky),
                 // As of the path, whose scales do not matter.
                 "aerial_transmittance" => Box::new(|x| {
-                    let path = aerial(&[&x[..8], &[1.0; 8], &x[8..]].concat());
+                    let path = aerial(&[&x[..VIEW], &[1.0; 8], &x[VIEW..]].concat());
                     path[..4].to_vec()
                 }),
                 _ => Box::new(aerial),
