@@ -7,7 +7,7 @@ use crate::lighting::{DirectLight, Lighting};
 use airlight::atmosphere::Atmosphere;
 use airlight::fog::RgbFog;
 use airlight::glam::DVec3;
-use airlight::sky::{LightSource, Scattering, Sky, SkySettings, TableChannels};
+use airlight::sky::{LightSource, Scattering, Sky, SkySettings};
 use airlight::spectrum::RgbSpace;
 use airlight_shaders::twins::colour::rgb_from_spectrum;
 use airlight_shaders::{ColourFit, SingleScatteringTable, SkyTables, wavelength_grid};
@@ -242,7 +242,7 @@ impl SkySolver {
     ) -> Result<RgbFog, SkyRendererError> {
         let top = self.sky.try_view(fog.top_m(), source)?;
         let direct = self.fit.sun_illuminance_lx(&top, self.space)?;
-        let sky = top.table(TableChannels::Spectral).irradiance(DVec3::Y);
+        let sky = top.downwelling_irradiance();
         let at_top = DirectLight {
             direction: tables.view.sun,
             illuminance_lx: Vec3::from_array(direct.map(|v| v as f32)),

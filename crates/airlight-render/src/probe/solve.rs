@@ -89,7 +89,7 @@ impl Probe {
             Some(night) => {
                 prepared.night_view_with(altitude_m, &sun.state(), night, channels, control)?
             }
-            None => prepared.view_with(altitude_m, &sun.state(), channels, control)?,
+            None => prepared.view_of_rays_with(altitude_m, &sun.state(), channels, control)?,
         };
         let view = match paths.sampler() {
             Some(sampler) => sampler.preview(),

@@ -7,6 +7,7 @@ pub(crate) mod parallel;
 pub(crate) mod quadrature;
 pub(crate) mod random;
 pub(crate) mod real;
+pub(crate) mod rings;
 pub(crate) mod rounded;
 pub(crate) mod simd;
 pub(crate) mod simpson;

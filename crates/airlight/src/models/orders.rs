@@ -138,6 +138,20 @@ impl PreparedModel for PreparedOrders {
         )?))
     }
 
+    fn view_of_rays_with(
+        &self,
+        observer_altitude_m: f64,
+        sun: &SunState,
+        channels: Channels,
+        control: Control<'_>,
+    ) -> Result<Arc<dyn RadianceView>, SceneError> {
+        if self.fog.is_some() {
+            return self.view_with(observer_altitude_m, sun, channels, control);
+        }
+        let view = self.sky.view_with(observer_altitude_m, *sun, control)?;
+        Ok(Arc::new(SolvedView::without_table(view, channels)))
+    }
+
     fn night_view_with(
         &self,
         observer_altitude_m: f64,

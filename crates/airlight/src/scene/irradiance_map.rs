@@ -3,8 +3,9 @@
 use crate::axes;
 use crate::math::interpolation::{Place, lerp};
 use crate::math::parallel;
+use crate::math::rings::rings;
 use glam::DVec3;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Numbers of tabulated normals from the nadir to the zenith, and in azimuth.
 const ROWS: usize = 25;
@@ -170,6 +171,35 @@ pub(super) fn horizontal_irradiance_of(
         .for_each(|(out, sum)| *out = sum as f32);
 }
 
+/// Irradiance of a horizontal surface by the upper hemisphere, for a radiance that increases towards the unit vector `sun` within a degree.
+pub(super) fn horizontal_irradiance_around(
+    sun: DVec3,
+    out: &mut [f32],
+    radiance: impl Fn(DVec3, &mut [f32]) + Sync,
+) {
+    /// Number of elevations on each side of the sun, and of azimuths away from it.
+    const NODES: usize = 24;
+    const STEPS: usize = 96;
+    let rings = rings((0.0, FRAC_PI_2), axes::elevation_rad(sun), NODES);
+    let sums = parallel::map(rings.len(), |index| {
+        let ring = &rings[index];
+        let (steps, elevation_deg) = (ring.steps(STEPS), ring.elevation_rad.to_degrees());
+        let mut values = vec![0.0; out.len()];
+        let mut sum = vec![0.0; out.len()];
+        for step in 0..steps {
+            let azimuth_deg = 360.0 * (step as f64 + 0.5) / steps as f64;
+            radiance(axes::direction(azimuth_deg, elevation_deg), &mut values);
+            let each = sum.iter_mut().zip(&values);
+            each.for_each(|(sum, v)| *sum += f64::from(*v));
+        }
+        let projected = ring.solid_angle * ring.elevation_rad.sin() / steps as f64;
+        sum.iter().map(|v| v * projected).collect::<Vec<f64>>()
+    });
+    for (channel, out) in out.iter_mut().enumerate() {
+        *out = sums.iter().map(|sum| sum[channel]).sum::<f64>() as f32;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -237,6 +267,20 @@ mod tests {
             let exact = PI + 2.0 * PI / 3.0 * side.dot(normal);
             let got = on(&sky, normal);
             assert!((got / exact - 1.0).abs() < 0.01, "{normal}: {got} {exact}");
+        }
+    }
+
+    #[test]
+    fn a_narrow_aureole_reaches_the_horizontal() {
+        for width in [0.01f64, 0.03] {
+            let mut got = [0.0];
+            horizontal_irradiance_around(SUN, &mut got, |d, out| {
+                let angle = 2.0 * (0.5 * (d - SUN).length()).asin();
+                out[0] = (-angle / width).exp() as f32;
+            });
+            let exact = TAU * width * width * SUN.y;
+            let off = f64::from(got[0]) / exact - 1.0;
+            assert!(off.abs() < 0.015, "{width}: {got:?} {exact}");
         }
     }
 

@@ -5,9 +5,8 @@ use crate::control::{Cancelled, Control};
 use crate::fog::{
     DirectionalLight, FogLanes, FogLighting, FogScattering, Ground, LayerLanes, effective_top_m,
 };
-use crate::sky::{TableChannels, View};
+use crate::sky::View;
 use crate::spectrum::Spectrum;
-use glam::DVec3;
 use std::f64::consts::PI;
 
 /// A view of a solved sky, and the rest of the sky's light.
@@ -54,8 +53,8 @@ impl TopLight {
     /// # Errors
     /// [`Cancelled`].
     pub fn of(top: &View, control: Control<'_>) -> Result<Self, Cancelled> {
-        let table = top.table_with(TableChannels::Spectral, control)?;
-        let (down, up) = (table.irradiance(DVec3::Y), table.irradiance(-DVec3::Y));
+        control.check()?;
+        let (down, up) = (top.downwelling_irradiance(), top.upwelling_irradiance());
         let mean = |(down, up): (&f32, &f32)| (0.5 * f64::from(down + up) / PI) as f32;
         Ok(Self {
             radius_m: top.radius_m(),

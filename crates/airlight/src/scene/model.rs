@@ -80,6 +80,20 @@ pub trait PreparedModel: Debug + Send + Sync + 'static {
         control: Control<'_>,
     ) -> Result<Arc<dyn RadianceView>, SceneError>;
 
+    /// As [`PreparedModel::view_with`], for a few rays: a view that tabulates nothing where that takes longer than the rays.
+    ///
+    /// # Errors
+    /// As [`PreparedModel::view_with`].
+    fn view_of_rays_with(
+        &self,
+        observer_altitude_m: f64,
+        sun: &SunState,
+        channels: Channels,
+        control: Control<'_>,
+    ) -> Result<Arc<dyn RadianceView>, SceneError> {
+        self.view_with(observer_altitude_m, sun, channels, control)
+    }
+
     /// As [`PreparedModel::view`], with the lights of the night. Models without
     /// [`Input::Night`](super::Input::Night), and those prepared for daylight only, return the view without them.
     ///

@@ -1,7 +1,7 @@
 //! Views of a solved sky, with or without fog.
 
 use super::fog_in_sky::FogInSky;
-use super::irradiance_map::horizontal_irradiance_of;
+use super::irradiance_map::horizontal_irradiance_around;
 use super::light::LitSky;
 use super::sun_disc_table::SunDiscTable;
 use super::{Channels, FogLayers, IrradianceMap, RadianceView, RowSampler, SceneError};
@@ -23,7 +23,8 @@ pub(crate) struct SolvedView {
     channels: Channels,
     /// Wavelengths with the solar irradiance at the sun's distance, for spectral values.
     grid: Option<WavelengthGrid>,
-    clear: Arc<SkyTable>,
+    /// Table of the sky without fog; without it every direction is integrated.
+    clear: Option<Arc<SkyTable>>,
     fog: Option<Arc<FogInSky>>,
     /// Air without fog, for path optics in front of objects.
     air: OnceLock<FogInSky>,
@@ -91,6 +92,20 @@ impl SolvedView {
             Some(fog) => fog.clear().clone(),
             None => Arc::new(view.table_with(channels, control)?),
         };
+        Ok(Self::of(view, channels, Some(clear), fog))
+    }
+
+    /// The sky of a view without fog and without a table, for few directions: each is integrated.
+    pub fn without_table(view: View, channels: Channels) -> Self {
+        Self::of(view, channels, None, None)
+    }
+
+    fn of(
+        view: View,
+        channels: Channels,
+        clear: Option<Arc<SkyTable>>,
+        fog: Option<Arc<FogInSky>>,
+    ) -> Self {
         let grid = match channels {
             Channels::Spectral => {
                 let factor = match view.source() {
@@ -101,7 +116,7 @@ impl SolvedView {
             }
             Channels::Rgb(_) => None,
         };
-        Ok(Self {
+        Self {
             view,
             channels,
             grid,
@@ -111,7 +126,7 @@ impl SolvedView {
             disc: OnceLock::new(),
             irradiance: OnceLock::new(),
             horizontal_irradiance: OnceLock::new(),
-        })
+        }
     }
 
     /// The view of the solved sky.
@@ -146,7 +161,10 @@ impl SolvedView {
             out.fill(0.0);
             return;
         }
-        self.clear.sample(direction, out);
+        match &self.clear {
+            Some(table) => table.sample(direction, out),
+            None => self.put(&self.view.along(direction, None).radiance(), out),
+        }
         if let Some(fog) = &self.fog {
             fog.cover(direction, out);
         }
@@ -182,7 +200,7 @@ impl RadianceView for SolvedView {
     }
 
     fn horizon_elevation_rad(&self) -> f64 {
-        self.clear.horizon_elevation_rad()
+        self.view.horizon_elevation_rad()
     }
 
     fn polarised(&self, direction: DVec3) -> Option<PolarisedLight> {
@@ -200,8 +218,16 @@ impl RadianceView for SolvedView {
     }
 
     fn radiance(&self, directions: &[DVec3], out: &mut [f32]) {
-        self.clear.samples_on_this_thread(directions, out);
-        let values = out.chunks_exact_mut(self.clear.channels());
+        match &self.clear {
+            Some(table) => table.samples_on_this_thread(directions, out),
+            None => {
+                let values = out.chunks_exact_mut(self.channel_count());
+                for (&direction, values) in directions.iter().zip(values) {
+                    self.sample(direction, values);
+                }
+            }
+        }
+        let values = out.chunks_exact_mut(self.channel_count());
         for (&direction, values) in directions.iter().zip(values) {
             if direction == DVec3::ZERO {
                 values.fill(0.0);
@@ -212,12 +238,11 @@ impl RadianceView for SolvedView {
     }
 
     fn row_sampler(&self, azimuths_rad: &[f64]) -> Option<Box<dyn RowSampler>> {
+        let clear = self.clear.clone()?;
         let sun_rad = axes::azimuth_deg(self.sun()).to_radians();
-        let columns = self
-            .clear
-            .columns(azimuths_rad.iter().map(|rad| rad - sun_rad));
+        let columns = clear.columns(azimuths_rad.iter().map(|rad| rad - sun_rad));
         Some(Box::new(SolvedRows {
-            clear: self.clear.clone(),
+            clear,
             columns,
             fog: self.fog.clone(),
         }))
@@ -236,7 +261,7 @@ impl RadianceView for SolvedView {
             out.fill(0.0);
             return;
         };
-        let values = out.chunks_exact_mut(self.clear.channels());
+        let values = out.chunks_exact_mut(self.channel_count());
         for (&direction, values) in directions.iter().zip(values) {
             table.sample(direction, values);
             let relative = self.view.source().relative_radiance(direction) as f32;
@@ -245,7 +270,7 @@ impl RadianceView for SolvedView {
     }
 
     fn irradiance(&self, normals: &[DVec3], out: &mut [f32]) {
-        let count = self.clear.channels();
+        let count = self.channel_count();
         let map = self.irradiance.get_or_init(|| {
             IrradianceMap::new(self.sun(), count, |directions, out| {
                 self.radiance(directions, out)
@@ -256,16 +281,18 @@ impl RadianceView for SolvedView {
         }
     }
 
-    /// With fog accurate to a few percent if the fog's aureole is narrow.
     fn horizontal_irradiance(&self, out: &mut [f32]) {
-        /// Number of rings, and of directions in each.
-        const DIRECTIONS: (usize, usize) = (60, 120);
         let irradiance = self.horizontal_irradiance.get_or_init(|| {
-            if self.fog.is_none() {
-                return self.clear.irradiance(DVec3::Y);
+            let mut sum = vec![0.0; self.channel_count()];
+            match (&self.clear, &self.fog) {
+                (None, _) => {
+                    self.put(&self.view.downwelling_irradiance(), &mut sum);
+                    return sum;
+                }
+                (Some(table), None) => return table.irradiance(DVec3::Y),
+                (Some(_), Some(_)) => {}
             }
-            let mut sum = vec![0.0; self.clear.channels()];
-            horizontal_irradiance_of(DIRECTIONS, &mut sum, |direction, values| {
+            horizontal_irradiance_around(self.sun(), &mut sum, |direction, values| {
                 self.sample(direction, values);
             });
             sum

@@ -10,12 +10,15 @@ use super::settings::{Scattering, SkyError, SkySettings};
 use super::trace::Tracer;
 use crate::atmosphere::Atmosphere;
 use crate::control::{Cancelled, Control};
+use crate::math::interpolation::lerp;
 use crate::math::parallel;
+use crate::math::rings::Ring;
 use crate::math::simd::vectorized;
 use crate::spectrum::Spectrum;
 use crate::transfer::columns::SlantColumns;
 use crate::transfer::ray::Ray;
 use crate::transfer::residual::{STREAMS, combined};
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// Light along a view ray at the wavelengths of a block, per unit solar irradiance.
@@ -76,6 +79,9 @@ pub trait Block: Send + Sync {
 
     /// Scattering by a constituent at the cosine `nu` of the angle.
     fn scattered(&self, constituent: usize, nu: f64) -> Scattered;
+
+    /// Mean over the azimuth of the light along the rays of a row, which is that of a ring, at an even number of even steps.
+    fn mean_over_azimuth(&self, row: &TableRow, ring: &Ring) -> Vec<f32>;
 
     /// Adds the light along each ray of `rows` to `out`. Each ray has `width` values: the smooth light in each channel, then each of
     /// the parts in each channel, divided by the mean phase function.
@@ -320,6 +326,14 @@ impl<const N: usize> Block for Solved<N> {
         }
     }
 
+    fn mean_over_azimuth(&self, row: &TableRow, ring: &Ring) -> Vec<f32> {
+        let mean = vectorized(
+            #[inline(always)]
+            || self.row_mean(row, ring),
+        );
+        self.used(&mean)
+    }
+
     fn fill(
         &self,
         rows: &[TableRow],
@@ -367,27 +381,67 @@ impl<const N: usize> RowLight<N> {
     }
 }
 
+/// Light along all rays of a row from that of every second one, interpolated to the seventh degree: the light is symmetric about the
+/// azimuths of the first and of the last ray.
+#[inline(always)]
+fn with_halfway_rays<const N: usize>(
+    every_second: &[Spectrum<N>],
+    rays: usize,
+) -> Vec<Spectrum<N>> {
+    const WEIGHTS: [f32; 4] = [
+        1225.0 / 2048.0,
+        -245.0 / 2048.0,
+        49.0 / 2048.0,
+        -5.0 / 2048.0,
+    ];
+    let last = rays - 1;
+    let at = |ray: usize| every_second[(if ray > last { 2 * last - ray } else { ray }) / 2];
+    let of_ray = |ray: usize| {
+        if ray.is_multiple_of(2) {
+            return at(ray);
+        }
+        let mut sum = Spectrum::ZERO;
+        for (k, weight) in WEIGHTS.into_iter().enumerate() {
+            let distance = 2 * k + 1;
+            sum = sum.scale_acc(at(ray.abs_diff(distance)) + at(ray + distance), weight);
+        }
+        sum.max_scalar(0.0)
+    };
+    (0..rays).map(of_ray).collect()
+}
+
 impl<const N: usize> Solved<N> {
     #[inline(always)]
     fn row_light(&self, row: &TableRow) -> RowLight<N> {
         let (air, diffuse, rays) = (&self.air, self.diffuse.as_ref(), row.bundle.len());
-        let mut light = RowLight {
-            streams: Vec::new(),
-            multiple_scatter: vec![Spectrum::ZERO; rays],
-        };
         let grid = diffuse.map(|d| &d.field.grid);
         let degree = diffuse.map_or(0, |d| d.field.basis.degree());
         let dimming = self.dimming();
         let marcher = Tracer::marcher(air);
         let path = Path::new(dimming, grid, &marcher, row.start, degree);
-        let (bundle, multiple) = (&row.bundle, &mut light.multiple_scatter);
-        path.accumulate_sunlight::<STREAMS, false>(dimming, &marcher, bundle, &mut light.streams);
+        let (all, few) = (&row.bundle, &row.bundle.every_second());
+        // Where the sun lights the whole path, and after the first scattering, light changes slowly with the azimuth.
+        let mut streams = Vec::new();
+        let is_lit = path.has_sun_above_horizon(all, 0..rays);
+        let bundle = if is_lit { few } else { all };
+        path.accumulate_sunlight::<STREAMS, false>(dimming, &marcher, bundle, &mut streams);
+        if is_lit {
+            streams = streams
+                .chunks_exact(few.len())
+                .flat_map(|light| with_halfway_rays(light, rays))
+                .collect();
+        }
+        let mut multiple = vec![Spectrum::ZERO; few.len()];
         if let Some(Diffuse { field, .. }) = diffuse {
             let scratch = &mut Scratch::default();
-            path.accumulate_scattered(field, &field.basis, bundle, scratch, multiple, None);
+            path.accumulate_scattered(field, &field.basis, few, scratch, &mut multiple, None);
         }
         let irradiance = |mu_sun| ground_irradiance(air, diffuse, mu_sun);
-        path.accumulate_ground(air, bundle, irradiance, multiple);
+        path.accumulate_ground(air, few, irradiance, &mut multiple);
+        let mut light = RowLight {
+            streams,
+            multiple_scatter: with_halfway_rays(&multiple, rays),
+        };
         for (s, sums) in air
             .scatterers
             .iter()
@@ -398,6 +452,40 @@ impl<const N: usize> Solved<N> {
             }
         }
         light
+    }
+
+    /// Mean of the light of a row over the azimuth.
+    #[inline(always)]
+    fn row_mean(&self, row: &TableRow, ring: &Ring) -> Spectrum<N> {
+        let light = self.row_light(row);
+        let nus = &row.bundle.nu;
+        let last = nus.len() - 1;
+        let steps = ring.steps(last);
+        let parts = steps / last;
+        // The cosine of the angle to the sun is linear in that of the azimuth.
+        let (middle, range) = (0.5 * (nus[0] + nus[last]), 0.5 * (nus[0] - nus[last]));
+        let mut sum = Spectrum::ZERO;
+        for step in 0..=steps {
+            let (before, part) = (step / parts, step % parts);
+            let (after, fraction) = ((before + 1).min(last), part as f32 / parts as f32);
+            let nu = middle + range * (PI * step as f64 / steps as f64).cos();
+            let multiple = &light.multiple_scatter;
+            let mut all = lerp(multiple[before], multiple[after], fraction);
+            for (place, s) in self.dimming().scatterers.iter().enumerate() {
+                let streams = std::array::from_fn(
+                    #[inline(always)]
+                    |k| {
+                        let ends = [before, after].map(|ray| light.stream(place, k, ray));
+                        lerp(ends[0], ends[1], fraction)
+                    },
+                );
+                let phase = s.phase(&self.air, nu);
+                all = all.mul_acc(combined(&streams, &s.shares(nu)), phase);
+            }
+            let weight = if step == 0 || step == steps { 0.5 } else { 1.0 };
+            sum = sum.scale_acc(all, weight / steps as f32);
+        }
+        sum
     }
 
     #[inline(always)]

@@ -153,10 +153,11 @@ impl Interval {
 fn radii_m<const N: usize>(air: &Air<N>, count: usize) -> Vec<f64> {
     const SAMPLES: usize = 2000;
     let shell: &Shell = air.shell();
-    let ground = shell.vertical_columns_m(shell.ground_radius_m);
+    let columns_above_m = |radius_m: f64| air.columns.at(radius_m).to_space_m(1.0).map(f64::from);
+    let ground = columns_above_m(shell.ground_radius_m);
     let share = 1.0 / air.scatterers.len().max(1) as f64;
     let measure = |x: f64| -> f64 {
-        let columns = shell.vertical_columns_m(shell.radius_of_coordinate(x));
+        let columns = columns_above_m(shell.radius_of_coordinate(x));
         let below: f64 = air
             .scatterers
             .iter()

@@ -180,6 +180,7 @@ fn add<const N: usize>(
     let mut low_degrees = vec![0.0; paths];
     for (m, moments) in rays.moments.iter().enumerate() {
         let at_nodes = associated(m, &nodes);
+        let rounded: Vec<f32> = moments.iter().map(|moment| *moment as f32).collect();
         for place in 0..nodes.len() {
             low_degrees.copy_from_slice(&rays.at_nodes[place * paths..][..paths]);
             for low in &mut low_degrees {
@@ -195,9 +196,9 @@ fn add<const N: usize>(
                 *factor = Spectrum::splat(*low as f32);
             }
             for (l, weight) in (first_degree..).zip(weights) {
-                let node = at_nodes[l * nodes.len() + place];
-                for (factor, moment) in factors.iter_mut().zip(&moments[l * paths..]) {
-                    *factor = factor.scale_acc(*weight, (node * moment) as f32);
+                let at_node = *weight * at_nodes[l * nodes.len() + place] as f32;
+                for (factor, moment) in factors.iter_mut().zip(&rounded[l * paths..]) {
+                    *factor = factor.scale_acc(at_node, *moment);
                 }
             }
             // The last node of each side is left out.

@@ -21,7 +21,7 @@
 //! (all orders of scattering), `horizontal_exchange`, `damping` and `mixing` (its corrections in thick air), `transport` (light scattered once
 //! more), `plane_parallel` (its direct solution in plane-parallel air), `ray_bundle` (rays that share their path), `trace` (light
 //! along one ray), `samples_along_rays` and `along_row` (light at many distances along rays of one elevation), `table` (all directions of a view),
-//! `table_coordinates` (where its rows and columns are dense), `split` (its light in
+//! `table_coordinates` (where its rows and columns are dense), `horizontal_irradiance` (the sum over all directions), `split` (its light in
 //! two parts that vary slowly, for tables), `stokes` (its
 //! polarisation).
 
@@ -35,6 +35,7 @@ mod field;
 mod harmonics;
 mod horizon;
 mod horizontal_exchange;
+mod horizontal_irradiance;
 mod light;
 mod light_source;
 mod mixing;

@@ -26,6 +26,10 @@ pub struct Path<const N: usize> {
     /// Cosine of the zenith angle at the start.
     pub mu: f64,
     nodes: Vec<PathNode<N>>,
+    /// For each node, its weight times the phase moments of the scattering coefficients up to the degree of the field.
+    source_weights: Vec<Spectrum<N>>,
+    /// Number of those moments.
+    degrees: usize,
     steps: Vec<PathStep>,
     /// Distance to the ground and transmittance to it, if the rays end there.
     ground: Option<(f64, Spectrum<N>)>,
@@ -50,8 +54,6 @@ struct PathNode<const N: usize> {
     weight: Spectrum<N>,
     /// Optical depth from the start that counts as unscattered.
     removed: Spectrum<N>,
-    /// `weight` times the l-th phase moment of the scattering coefficients.
-    source_weights: Vec<Spectrum<N>>,
     /// Length of the node's interval times the moments of degree 2 of the scattering matrix: of the intensity that arises from
     /// polarised light, attenuated as the intensity, and of the polarisation that arises from natural and from polarised light, which
     /// is attenuated less.
@@ -170,6 +172,15 @@ impl RayBundle {
     pub fn push(&mut self, mu_sun: f64, nu: f64) {
         self.mu_sun.push(mu_sun);
         self.nu.push(nu);
+    }
+
+    /// The first, third, fifth and further rays.
+    pub fn every_second(&self) -> Self {
+        let every_second = |all: &[f64]| all.iter().copied().step_by(2).collect();
+        Self {
+            mu_sun: every_second(&self.mu_sun),
+            nu: every_second(&self.nu),
+        }
     }
 
     /// Ray by index, for the start (radius in m, cosine of the zenith angle).
@@ -326,13 +337,13 @@ impl<const N: usize> Path<N> {
         degree: usize,
     ) -> Self {
         let ray = zenith_sun_ray(start);
-        let mut path = Self::empty(start);
+        let mut path = Self::empty(start, degree);
         let Some(segment) = air.shell().segment(&ray, f64::INFINITY) else {
             return path;
         };
         let span = (segment.start_m, segment.end_m);
         let before = [0.0; MAX_CONSTITUENTS];
-        let columns = path.trace(air, grid, marcher, (span, before), degree);
+        let columns = path.trace(air, grid, marcher, (span, before));
         if segment.meets_ground {
             path.ground = Some((segment.end_m, air.coefficients.transmittance(&columns)));
         }
@@ -354,17 +365,17 @@ impl<const N: usize> Path<N> {
         let mut columns = [0.0; MAX_CONSTITUENTS];
         let mut pieces = Vec::with_capacity(stops_m.len() + 1);
         let Some(segment) = air.shell().segment(&ray, f64::INFINITY) else {
-            pieces.resize_with(stops_m.len() + 1, || (columns, Self::empty(start)));
+            pieces.resize_with(stops_m.len() + 1, || (columns, Self::empty(start, degree)));
             return pieces;
         };
         let mut from_m = segment.start_m;
         let mut edges = Vec::new();
         for stop_m in stops_m.iter().copied().chain([f64::INFINITY]) {
             let span = (from_m, stop_m.clamp(from_m, segment.end_m));
-            let mut piece = Self::empty(start);
+            let mut piece = Self::empty(start, degree);
             let before = columns;
             if span.1 > span.0 {
-                piece.trace(air, grid, marcher, (span, before), degree);
+                piece.trace(air, grid, marcher, (span, before));
                 let inside = air.columns.along_m(&ray, span, &mut edges);
                 for (sum, column) in columns.iter_mut().zip(inside) {
                     *sum += column;
@@ -381,11 +392,13 @@ impl<const N: usize> Path<N> {
         pieces
     }
 
-    fn empty((radius_m, mu): (f64, f64)) -> Self {
+    fn empty((radius_m, mu): (f64, f64), degree: usize) -> Self {
         Self {
             radius_m,
             mu,
             nodes: Vec::new(),
+            source_weights: Vec::new(),
+            degrees: degree + 1,
             steps: Vec::new(),
             ground: None,
         }
@@ -400,7 +413,6 @@ impl<const N: usize> Path<N> {
         grid: Option<&FieldGrid>,
         marcher: &Marcher<'_>,
         (span, columns_m): ((f64, f64), PerConstituent),
-        degree: usize,
     ) -> PerConstituent {
         /// Optical depth beyond which no light arrives.
         const OPAQUE: f32 = 16.0;
@@ -441,7 +453,6 @@ impl<const N: usize> Path<N> {
                         place: grid.map_or(RadialStencil::GROUND, |g| g.place_of_radius(radius_m)),
                         weight,
                         removed: air.peaks.extinction(&columns_m),
-                        source_weights: Vec::new(),
                         polarised_weights: [Spectrum::ZERO; 3],
                         linear_gain: linear_gain(air, &columns_m),
                         horizon: HorizonPlace::of(
@@ -456,9 +467,9 @@ impl<const N: usize> Path<N> {
                 for (node, &depth) in self.nodes[first..].iter_mut().zip(&panel.depths) {
                     node.weight *= correct.at(depth);
                     node.peak_weight *= node.weight;
-                    node.source_weights = (0..=degree)
-                        .map(|l| node.weight * scattering_moment(air, &node.densities, l))
-                        .collect();
+                    let moments = (0..self.degrees)
+                        .map(|l| node.weight * scattering_moment(air, &node.densities, l));
+                    self.source_weights.extend(moments);
                     let [natural, kept] =
                         polarised_moments(air, &node.densities).map(|moment| node.weight * moment);
                     node.polarised_weights =
@@ -620,10 +631,10 @@ impl<const N: usize> Path<N> {
         // Those of the light at the horizon, and of polarised light, are among them.
         let modes = MODES.max(basis.degree() + 1);
         scratch.resize(rays, modes, basis.count());
-        for node in &self.nodes {
+        for (node, source_weights) in self.nodes_with_weights() {
             let suns = scratch.locate(&field.grid, self, node, bundle);
             let first_sun = suns.start;
-            node.scatter(field, basis, suns, scratch);
+            node.scatter(field, (basis, source_weights), suns, scratch);
             scratch.evaluate_cosines(node.mu, modes);
             for (slot, out) in out.iter_mut().enumerate() {
                 let first = scratch.below[slot] as usize - first_sun;
@@ -659,13 +670,13 @@ impl<const N: usize> Path<N> {
     pub fn accumulate_response(&self, basis: &Harmonics, y: &mut [f32], out: &mut Response<N>) {
         let count = basis.count();
         let stride = out.stride;
-        for node in &self.nodes {
+        for (node, source_weights) in self.nodes_with_weights() {
             let sin = (1.0 - node.mu * node.mu).max(0.0).sqrt();
             basis.evaluate(node.mu, sin, y);
             let RadialStencil { first, weights } = node.place;
             let points = out.intensity[first * stride..].chunks_exact_mut(stride);
             for (out, w) in points.zip(weights) {
-                for (l, source) in node.source_weights.iter().enumerate() {
+                for (l, source) in source_weights.iter().enumerate() {
                     for k in basis.span(l) {
                         out[k] = out[k].scale_acc(*source, w * y[k]);
                     }
@@ -692,6 +703,14 @@ impl<const N: usize> Path<N> {
                 }
             }
         }
+    }
+
+    /// The nodes with their source weights by degree.
+    #[inline(always)]
+    fn nodes_with_weights(&self) -> impl Iterator<Item = (&PathNode<N>, &[Spectrum<N>])> {
+        self.nodes
+            .iter()
+            .zip(self.source_weights.chunks_exact(self.degrees))
     }
 
     /// Transmittance to the ground, if the path ends there.
@@ -731,7 +750,7 @@ impl<const N: usize> PathNode<N> {
     fn scatter(
         &self,
         field: &RadianceField<N>,
-        basis: &Harmonics,
+        (basis, source_weights): (&Harmonics, &[Spectrum<N>]),
         suns: Range<usize>,
         scratch: &mut Scratch<N>,
     ) {
@@ -740,7 +759,7 @@ impl<const N: usize> PathNode<N> {
         let y = &mut scratch.y[..count];
         basis.evaluate(self.mu, sin, y);
         let factors = &mut scratch.factors[..count];
-        for (l, weight) in self.source_weights.iter().enumerate() {
+        for (l, weight) in source_weights.iter().enumerate() {
             for k in basis.span(l) {
                 factors[k] = *weight * y[k];
             }

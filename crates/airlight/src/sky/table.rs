@@ -11,7 +11,7 @@ use crate::debug::debug_fields;
 use crate::math::arctangent::arctangent;
 use crate::math::interpolation::{cubic_f32, cubic_mirrored};
 use crate::math::parallel;
-use crate::math::quadrature::GaussRule;
+use crate::math::rings::rings;
 use crate::math::simd::vectorized;
 use crate::math::slices::check_length;
 use crate::spectrum::RgbSpace;
@@ -296,8 +296,8 @@ impl SkyTable {
     /// Irradiance on a surface with the unit normal `normal` from sky and ground, without the sun's disc, one value per channel
     /// (W m^-2 nm^-1, or lux for RGB channels).
     ///
-    /// A sum over up to 25 000 directions, denser towards the horizon as in the table; accurate to 0.1 % for skies whose
-    /// aureole is wider than a degree.
+    /// A sum over rings of 128 directions, 1024 beside the sun, which are dense there and at the horizon; accurate to 0.1 %, also in dust
+    /// with an aureole of a degree.
     pub fn irradiance(&self, normal: DVec3) -> Vec<f32> {
         let mut out = vec![0.0; self.channels];
         self.irradiances(&[normal], &mut out);
@@ -310,30 +310,39 @@ impl SkyTable {
     /// # Panics
     /// Where `out` has another length.
     pub fn irradiances(&self, normals: &[DVec3], out: &mut [f32]) {
-        const AZIMUTH_SAMPLES: usize = 256;
+        /// Number of elevations on each side of the sun, and of azimuths away from it.
+        const NODES: usize = 32;
+        const STEPS: usize = 128;
         check_length(out, normals.len() * self.channels);
-        let rule = GaussRule::new(48);
         let mut sums = vec![0.0f64; out.len()];
-        let mut radiance = vec![0.0f32; AZIMUTH_SAMPLES * self.channels];
+        let sun_rad = crate::axes::elevation_rad(self.sun);
         let TableCoordinates {
             horizon_rad,
             highest_rad,
             ..
         } = self.coordinates;
-        for span in [highest_rad - horizon_rad, -FRAC_PI_2 - horizon_rad] {
-            for (x, w) in rule.on(0.0, 1.0) {
-                let elevation = horizon_rad + span * x * x;
-                let (sin, cos) = elevation.sin_cos();
+        // What reaches an upward-facing surface ends at the horizontal.
+        let level_rad = highest_rad.clamp(horizon_rad, 0.0);
+        for span in [
+            (horizon_rad, -FRAC_PI_2),
+            (horizon_rad, level_rad),
+            (level_rad, highest_rad),
+        ] {
+            for ring in rings(span, sun_rad, NODES) {
+                let (sin, cos) = ring.elevation_rad.sin_cos();
                 let reaches = |n: &DVec3| sin * n.y + cos * n.x.hypot(n.z) > 0.0;
                 if !normals.iter().any(reaches) {
                     continue;
                 }
-                let solid_angle =
-                    w * 2.0 * x * span.abs() * cos * 2.0 * PI / AZIMUTH_SAMPLES as f64;
-                let ring: [DVec3; AZIMUTH_SAMPLES] = std::array::from_fn(|k| {
-                    let (z, x) = (2.0 * PI * (k as f64 + 0.5) / AZIMUTH_SAMPLES as f64).sin_cos();
-                    DVec3::new(cos * x, sin, cos * z)
-                });
+                let azimuths = ring.steps(STEPS);
+                let solid_angle = ring.solid_angle / azimuths as f64;
+                let ring: Vec<DVec3> = (0..azimuths)
+                    .map(|k| {
+                        let (z, x) = (2.0 * PI * (k as f64 + 0.5) / azimuths as f64).sin_cos();
+                        DVec3::new(cos * x, sin, cos * z)
+                    })
+                    .collect();
+                let mut radiance = vec![0.0f32; azimuths * self.channels];
                 self.samples(&ring, &mut radiance);
                 parallel::for_each_chunk(&mut sums, self.channels, |index, sums| {
                     for (direction, radiance) in

@@ -4,7 +4,6 @@ use super::block::{ChannelMatrix, TableRow};
 use super::peaked::{Peaked, Scattered};
 use super::ray_bundle::RayBundle;
 use super::table::{AZIMUTHS, Band, STEPS_ABOVE, STEPS_BELOW, SkyTable, TableChannels};
-use super::table_coordinates::TableCoordinates;
 use super::view::View;
 use crate::atmosphere::Constituent;
 use crate::control::{Cancelled, Control};
@@ -42,6 +41,8 @@ impl SkyTable {
             in_channels(&matrices, spectrum)
         });
         let width = (channel_count * (1 + peaked.parts.len())).next_multiple_of(4);
+        let azimuth_rad = |k| PI * coordinates.azimuth(k as f64 / AZIMUTHS as f64);
+        let azimuths_rad: Vec<f64> = (0..=AZIMUTHS).map(azimuth_rad).collect();
         let band = |places: [f64; 2], steps: usize, is_below: bool| {
             let rows = steps + 1;
             let elevations = (0..rows).map(|row| {
@@ -49,9 +50,8 @@ impl SkyTable {
                 let place = places[0] + (places[1] - places[0]) * part;
                 coordinates.elevation_rad(place, is_below)
             });
-            let table_rows: Vec<TableRow> = elevations
-                .map(|elevation_rad| table_row(view, elevation_rad, &coordinates))
-                .collect();
+            let row = |elevation_rad| TableRow::new(view, elevation_rad, &azimuths_rad);
+            let table_rows: Vec<TableRow> = elevations.map(row).collect();
             let mut values = vec![0.0; rows * (AZIMUTHS + 1) * width];
             for (block, matrix) in sky.blocks().iter().zip(&matrices) {
                 block.fill(&table_rows, matrix, &peaked, width, &mut values, control)?;
@@ -128,23 +128,21 @@ impl Peaked {
     }
 }
 
-/// Rays of one row of the table.
-fn table_row(view: &View, elevation_rad: f64, coordinates: &TableCoordinates) -> TableRow {
-    let mu_sun = view.ray(view.sun()).mu;
-    let sin_sun = ((1.0 - mu_sun) * (1.0 + mu_sun)).max(0.0).sqrt();
-    let (mu, cos_elevation) = elevation_rad.sin_cos();
-    let mut bundle = RayBundle::default();
-    for column in 0..=AZIMUTHS {
-        let azimuth = coordinates.azimuth(column as f64 / AZIMUTHS as f64);
-        let cos_azimuth = (PI * azimuth).cos();
-        bundle.push(
-            mu_sun,
-            (mu * mu_sun + cos_elevation * sin_sun * cos_azimuth).clamp(-1.0, 1.0),
-        );
-    }
-    TableRow {
-        start: (view.radius_m(), mu),
-        bundle,
+impl TableRow {
+    /// Rays of a view at an elevation, rad, and at azimuths from that of the sun to the opposite one, rad.
+    pub(super) fn new(view: &View, elevation_rad: f64, azimuths_rad: &[f64]) -> Self {
+        let mu_sun = view.ray(view.sun()).mu;
+        let sin_sun = ((1.0 - mu_sun) * (1.0 + mu_sun)).max(0.0).sqrt();
+        let (mu, cos_elevation) = elevation_rad.sin_cos();
+        let mut bundle = RayBundle::default();
+        for azimuth_rad in azimuths_rad {
+            let nu = mu * mu_sun + cos_elevation * sin_sun * azimuth_rad.cos();
+            bundle.push(mu_sun, nu.clamp(-1.0, 1.0));
+        }
+        Self {
+            start: (view.radius_m(), mu),
+            bundle,
+        }
     }
 }
 
