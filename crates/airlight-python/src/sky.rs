@@ -5,7 +5,6 @@ use crate::atmosphere::{AirArgument, Atmosphere};
 use crate::compute::compute;
 use crate::errors::Failure;
 use crate::picture::encode_png;
-use airlight::Control;
 use airlight::atmosphere;
 use airlight::axes;
 use airlight::scene::{
@@ -13,6 +12,7 @@ use airlight::scene::{
 };
 use airlight::sky::{self, LineOfSight, SunCoverage};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
+use airlight::{Cancelled, Control};
 use airlight_image::rows::draw_rows;
 use airlight_image::tone::{ToneCurve, ToneMapper};
 use airlight_image::{Frame, Projection};
@@ -442,6 +442,56 @@ impl View {
             })
         })?;
         arrays::matrix(py, values, count)
+    }
+
+    /// Diffuse downwelling irradiance at the eye: of a horizontal surface that faces up, without the sun's disc.
+    ///
+    /// As ``irradiance`` to 1 %, without the tables that it needs first.
+    ///
+    /// Parameters
+    /// ----------
+    /// threads : int or None
+    ///     Number of threads.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (w,), float32
+    ///     W m^-2 nm^-1.
+    #[pyo3(signature = (*, threads=None))]
+    fn downwelling_irradiance<'py>(
+        &self,
+        py: Python<'py>,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let values = compute(py, threads, |control| {
+            control.check()?;
+            Ok::<_, Cancelled>(self.view.downwelling_irradiance())
+        })?;
+        Ok(arrays::vector(py, values))
+    }
+
+    /// Upwelling irradiance at the eye: of a horizontal surface that faces down, by ground and air.
+    ///
+    /// Parameters
+    /// ----------
+    /// threads : int or None
+    ///     Number of threads.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (w,), float32
+    ///     W m^-2 nm^-1.
+    #[pyo3(signature = (*, threads=None))]
+    fn upwelling_irradiance<'py>(
+        &self,
+        py: Python<'py>,
+        threads: Option<usize>,
+    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let values = compute(py, threads, |control| {
+            control.check()?;
+            Ok::<_, Cancelled>(self.view.upwelling_irradiance())
+        })?;
+        Ok(arrays::vector(py, values))
     }
 
     /// Irradiance by the sun's disc of a surface that faces it, W m^-2 nm^-1: array of shape (w,).

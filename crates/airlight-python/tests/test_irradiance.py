@@ -67,3 +67,11 @@ def test_spectra_are_those_of_spectrl2_with_the_same_air(day):
         direct = np.interp(nm, at, np.ravel(found["dni"]))
         ratio = view.sun_irradiance() / direct
         assert abs(ratio.mean() - 1) < 0.06, (elevation_deg, ratio)
+
+
+def test_horizontal_surfaces_are_those_among_tilted_ones():
+    sky = airlight.Sky("hazy", wavelengths=[450, 550, 650], sun_elevation_deg=40, altitude_m=3e3)
+    view = sky.view(3e3, sun_elevation_deg=40)
+    up, down = view.irradiance([[0, 1, 0], [0, -1, 0]])
+    np.testing.assert_allclose(view.downwelling_irradiance(), up, rtol=0.01)
+    np.testing.assert_allclose(view.upwelling_irradiance(), down, rtol=0.01)

@@ -45,7 +45,7 @@ def _solve(
         direct = view.sun_irradiance()
         parts["direct_normal"][index] = direct
         parts["direct_horizontal"][index] = direct * max(np.sin(np.radians(elevation_deg)), 0.0)
-        parts["diffuse_horizontal"][index] = view.irradiance([[0.0, 1.0, 0.0]], threads=threads)[0]
+        parts["diffuse_horizontal"][index] = view.downwelling_irradiance(threads=threads)
     parts["global_horizontal"] = parts["direct_horizontal"] + parts["diffuse_horizontal"]
     return sky.wavelengths_nm, sun.elevation_deg, parts
 
