@@ -16,7 +16,7 @@ use crate::math::simd::vectorized;
 use crate::math::slices::check_length;
 use crate::spectrum::RgbSpace;
 use glam::DVec3;
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI};
 
 /// Channels of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,8 +62,9 @@ debug_fields! { SkyTable { channels, sun, coordinates } }
 
 /// The table between two elevations at which light bends or jumps.
 pub(super) struct Band {
-    /// Places of the first and of the last row.
-    pub(super) places: [f64; 2],
+    /// Place of the first row, and the inverse of the difference of the last one's from it.
+    pub(super) first: f64,
+    pub(super) per_place: f64,
     pub(super) rows: usize,
     /// `[row][azimuth][channel of each part]`.
     pub(super) values: Vec<f32>,
@@ -87,6 +88,8 @@ struct Column {
 struct Angles<const N: usize> {
     /// Elevations, rad.
     elevations: [f64; N],
+    /// Places of the elevations among the rows of their side of the horizon.
+    rows: [f64; N],
     /// Places of the azimuths from that of the sun, to either side; 1 is the opposite one.
     columns: [f64; N],
     /// Sines of half the angle to the sun.
@@ -169,6 +172,7 @@ impl SkyTable {
         } = self.sun_azimuth;
         let mut angles = Angles {
             elevations: [0.0; N],
+            rows: [0.0; N],
             columns: [0.0; N],
             half_sines: [0.0; N],
         };
@@ -176,10 +180,23 @@ impl SkyTable {
             let horizontal = (x * x + z * z).sqrt();
             let (along, across) = (x * sun_x + z * sun_z, x * sun_z - z * sun_x);
             angles.elevations[i] = arctangent(y, horizontal, (x * x + y * y + z * z).sqrt());
-            let azimuth = arctangent(across.abs(), along, horizontal) / PI;
-            angles.columns[i] = self.coordinates.column_place(azimuth);
+            angles.columns[i] = arctangent(across.abs(), along, horizontal) * FRAC_1_PI;
             let [x, y, z] = [x - self.sun.x, y - self.sun.y, z - self.sun.z];
             angles.half_sines[i] = 0.5 * (x * x + y * y + z * z).sqrt();
+        }
+        let of = &self.coordinates;
+        let has_kink = self.below_kink.is_some();
+        for (row, &elevation) in angles.rows.iter_mut().zip(&angles.elevations) {
+            let is_below = elevation < of.horizon_rad;
+            *row = match has_kink {
+                true => of.row_place(elevation, is_below),
+                false => of.row_place_beyond_kink(elevation, is_below),
+            };
+        }
+        if of.dense_share > 0.0 {
+            for column in &mut angles.columns {
+                *column = of.column_place(*column);
+            }
         }
         angles
     }
@@ -188,7 +205,8 @@ impl SkyTable {
     #[inline(always)]
     fn look_up_cells<const N: usize>(&self, angles: &Angles<N>, cell: &mut [f32], out: &mut [f32]) {
         for (i, out) in out.chunks_exact_mut(self.channels).enumerate() {
-            if self.interpolate(angles.elevations[i], angles.columns[i], cell) {
+            let place = (angles.elevations[i], angles.rows[i]);
+            if self.interpolate(place, angles.columns[i], cell) {
                 self.combine(cell, angles.half_sines[i], out);
             } else {
                 out.fill(0.0);
@@ -201,11 +219,12 @@ impl SkyTable {
     pub(super) fn parts(&self, direction: DVec3) -> Vec<f32> {
         let Angles {
             elevations: [elevation],
+            rows: [row],
             columns: [column],
             ..
         } = self.angles(&[direction]);
         let mut cell = vec![0.0; self.width];
-        self.interpolate(elevation, column, &mut cell);
+        self.interpolate((elevation, row), column, &mut cell);
         cell
     }
 
@@ -367,25 +386,34 @@ impl SkyTable {
     #[inline(always)]
     fn place(&self, elevation: f64) -> Option<(&Band, f64)> {
         let of = &self.coordinates;
-        let is_below = elevation < of.horizon_rad;
-        let beyond = (elevation - of.horizon_rad) / (of.highest_rad - of.horizon_rad);
-        if beyond > 1.0 + 1e-12 {
+        self.row_of_band(
+            elevation,
+            of.row_place(elevation, elevation < of.horizon_rad),
+        )
+    }
+
+    /// The same, given the place of the elevation among the rows of its side of the horizon.
+    #[inline(always)]
+    fn row_of_band(&self, elevation: f64, place: f64) -> Option<(&Band, f64)> {
+        /// Rounding of elevations, rad.
+        const ROUNDING: f64 = 1e-13;
+        let of = &self.coordinates;
+        if elevation > of.highest_rad + ROUNDING {
             return None;
         }
         let band = match &self.below_kink {
-            _ if is_below => &self.below,
+            _ if elevation < of.horizon_rad => &self.below,
             Some(band) if elevation < of.kink_rad => band,
             _ => &self.above,
         };
-        let [first, last] = band.places;
-        let row = (of.row_place(elevation, is_below) - first) / (last - first);
+        let row = (place - band.first) * band.per_place;
         Some((band, row.clamp(0.0, 1.0)))
     }
 
-    /// Interpolates all values of a cell at an elevation (rad) and the place of a column; false above the atmosphere's limb.
+    /// Interpolates all values of a cell at an elevation (rad), its place among the rows and the place of a column; false above the atmosphere's limb.
     #[inline(always)]
-    fn interpolate(&self, elevation: f64, column: f64, cell: &mut [f32]) -> bool {
-        let Some((band, row)) = self.place(elevation) else {
+    fn interpolate(&self, (elevation, place): (f64, f64), column: f64, cell: &mut [f32]) -> bool {
+        let Some((band, row)) = self.row_of_band(elevation, place) else {
             return false;
         };
         let width = cell.len();

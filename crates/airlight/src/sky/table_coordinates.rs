@@ -31,6 +31,9 @@ pub struct TableCoordinates {
     pub dense_azimuth: f64,
     /// Width of the dense part, half turns.
     pub dense_width: f64,
+    /// Share of rows below the horizon that are as dense at the nadir as rays to the ground are from far away; the others are denser near
+    /// the horizon, as rays from a low eye soon meet the ground elsewhere.
+    pub even_below: f64,
 }
 
 impl View {
@@ -68,32 +71,46 @@ impl TableCoordinates {
             dense_share: dense_share(-horizon_rad),
             dense_azimuth,
             dense_width,
+            even_below: -horizon_rad.sin(),
         }
     }
 
     /// Place of an elevation (rad) among the rows above or below the horizon.
     #[inline(always)]
     pub fn row_place(&self, elevation_rad: f64, is_below: bool) -> f64 {
-        let part = |from: f64, to: f64| ((elevation_rad - from) / (to - from)).clamp(0.0, 1.0);
-        if is_below {
-            let root = part(self.horizon_rad, -FRAC_PI_2).sqrt().sqrt();
-            let space = self.linear_below();
-            return root * (1.0 - space + space * root);
+        if is_below || elevation_rad >= self.kink_rad {
+            return self.row_place_beyond_kink(elevation_rad, is_below);
         }
-        if elevation_rad < self.kink_rad {
-            let part = part(self.horizon_rad, self.kink_rad);
-            return self.kink_place * FRAC_2_PI * arctangent(part.sqrt(), (1.0 - part).sqrt(), 1.0);
+        let part = (elevation_rad - self.horizon_rad) / (self.kink_rad - self.horizon_rad);
+        let part = part.clamp(0.0, 1.0);
+        self.kink_place * FRAC_2_PI * arctangent(part.sqrt(), (1.0 - part).sqrt(), 1.0)
+    }
+
+    /// [`TableCoordinates::row_place`] other than between the horizon and the kink, without branches: loops over many elevations run in
+    /// vector registers.
+    #[inline(always)]
+    pub(super) fn row_place_beyond_kink(&self, elevation_rad: f64, is_below: bool) -> f64 {
+        let (from, to) = match is_below {
+            true => (self.horizon_rad, -FRAC_PI_2),
+            false => (self.kink_rad, self.highest_rad),
+        };
+        let root = ((elevation_rad - from) / (to - from))
+            .clamp(0.0, 1.0)
+            .sqrt();
+        let below = root.sqrt();
+        match is_below {
+            true => below * (1.0 - self.even_below + self.even_below * below),
+            false => self.kink_place + (1.0 - self.kink_place) * root,
         }
-        self.kink_place + (1.0 - self.kink_place) * part(self.kink_rad, self.highest_rad).sqrt()
     }
 
     /// Inverse of [`TableCoordinates::row_place`], off the horizon by a nanoradian, where the light jumps.
     pub fn elevation_rad(&self, place: f64, is_below: bool) -> f64 {
         let between = |from: f64, to: f64, part: f64| from + (to - from) * part;
         if is_below {
-            let space = self.linear_below();
+            let even = self.even_below;
             let root =
-                2.0 * place / (1.0 - space + ((1.0 - space).powi(2) + 4.0 * space * place).sqrt());
+                2.0 * place / (1.0 - even + ((1.0 - even).powi(2) + 4.0 * even * place).sqrt());
             let part = root.powi(4).max(Self::BESIDE_HORIZON);
             return between(self.horizon_rad, -FRAC_PI_2, part);
         }
@@ -109,12 +126,6 @@ impl TableCoordinates {
         };
         let first = between(self.horizon_rad, self.highest_rad, Self::BESIDE_HORIZON);
         elevation_rad.max(first)
-    }
-
-    /// Share of rows below the horizon that are as dense at the nadir as rays to the ground are from far away; the others are denser near
-    /// the horizon, as rays from a low eye soon meet the ground elsewhere.
-    fn linear_below(&self) -> f64 {
-        -self.horizon_rad.sin()
     }
 
     /// Place of an azimuth from the sun among the columns; azimuths are in half turns.
@@ -217,6 +228,7 @@ mod tests {
             dense_share: dense_share(dip_deg.to_radians()),
             dense_azimuth,
             dense_width,
+            even_below: -horizon_rad.sin(),
         }
     }
 

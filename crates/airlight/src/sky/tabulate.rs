@@ -57,7 +57,8 @@ impl SkyTable {
                 block.fill(&table_rows, matrix, &peaked, width, &mut values, control)?;
             }
             Ok(Band {
-                places,
+                first: places[0],
+                per_place: (places[1] - places[0]).recip(),
                 rows,
                 values,
             })
