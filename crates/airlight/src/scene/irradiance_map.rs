@@ -178,8 +178,8 @@ pub(super) fn horizontal_irradiance_around(
     radiance: impl Fn(DVec3, &mut [f32]) + Sync,
 ) {
     /// Number of elevations on each side of the sun, and of azimuths away from it.
-    const NODES: usize = 24;
-    const STEPS: usize = 96;
+    const NODES: usize = 16;
+    const STEPS: usize = 48;
     let rings = rings((0.0, FRAC_PI_2), axes::elevation_rad(sun), NODES);
     let sums = parallel::map(rings.len(), |index| {
         let ring = &rings[index];
