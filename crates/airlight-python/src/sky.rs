@@ -279,6 +279,20 @@ impl View {
         let rows = SkyRows::new(frame, layer, sources, &channels, 1.0);
         Ok(draw_rows(&rows, frame.size(), control)?)
     }
+
+    /// Irradiance of a horizontal surface, one value per wavelength.
+    fn horizontal_irradiance<'py>(
+        &self,
+        py: Python<'py>,
+        threads: Option<usize>,
+        of: fn(&sky::View) -> Vec<f32>,
+    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let values = compute(py, threads, |control| {
+            control.check()?;
+            Ok::<_, Cancelled>(of(&self.view))
+        })?;
+        Ok(arrays::vector(py, values))
+    }
 }
 
 #[pymethods]
@@ -463,11 +477,7 @@ impl View {
         py: Python<'py>,
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        let values = compute(py, threads, |control| {
-            control.check()?;
-            Ok::<_, Cancelled>(self.view.downwelling_irradiance())
-        })?;
-        Ok(arrays::vector(py, values))
+        self.horizontal_irradiance(py, threads, sky::View::downwelling_irradiance)
     }
 
     /// Upwelling irradiance at the eye: of a horizontal surface that faces down, by ground and air.
@@ -487,11 +497,7 @@ impl View {
         py: Python<'py>,
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        let values = compute(py, threads, |control| {
-            control.check()?;
-            Ok::<_, Cancelled>(self.view.upwelling_irradiance())
-        })?;
-        Ok(arrays::vector(py, values))
+        self.horizontal_irradiance(py, threads, sky::View::upwelling_irradiance)
     }
 
     /// Irradiance by the sun's disc of a surface that faces it, W m^-2 nm^-1: array of shape (w,).
