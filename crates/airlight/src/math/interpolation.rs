@@ -136,22 +136,6 @@ pub fn cubic_f32(x: f64, count: usize) -> (usize, [f32; 4]) {
     (first, weights.map(|w| w as f32))
 }
 
-/// Nodes and weights of cubic interpolation at `x` in `[0, 1]` among nodes 0 to `steps`, in a table that is mirrored beyond
-/// both ends.
-#[inline(always)]
-pub fn cubic_mirrored(x: f64, steps: usize) -> ([usize; 4], [f32; 4]) {
-    let position = x * steps as f64;
-    let first = (position as isize).min(steps as isize - 1) - 1;
-    let nodes = std::array::from_fn(|k| {
-        let node = (first + k as isize).unsigned_abs();
-        if node > steps { 2 * steps - node } else { node }
-    });
-    (
-        nodes,
-        cubic_weights(position - first as f64).map(|w| w as f32),
-    )
-}
-
 /// Weights of Hermite interpolation at the fraction `t` of an interval: of the two values, and of the two slopes times the
 /// width of the interval.
 #[inline(always)]
@@ -260,23 +244,6 @@ mod tests {
             let node = |k: usize| (first + k) as f64 / (count - 1) as f64;
             let got: f64 = (0..4).map(|k| weights[k] * cube(node(k))).sum();
             assert!((got - cube(x)).abs() < 1e-12, "{x}: {got}");
-        }
-    }
-
-    #[test]
-    fn mirrored_interpolation_is_even_beyond_the_ends() {
-        // Cosines over half a turn are mirror-symmetric at both ends.
-        let steps = 64;
-        for x in [0.0, 0.004, 0.5, 0.993, 1.0] {
-            let (nodes, weights) = cubic_mirrored(x, steps);
-            let cosine = |k: usize| (std::f64::consts::PI * k as f64 / steps as f64).cos();
-            let got: f64 = nodes
-                .iter()
-                .zip(weights)
-                .map(|(&k, w)| f64::from(w) * cosine(k))
-                .sum();
-            let exact = (std::f64::consts::PI * x).cos();
-            assert!((got - exact).abs() < 1e-6, "{x}: {got} {exact}");
         }
     }
 

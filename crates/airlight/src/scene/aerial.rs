@@ -8,6 +8,7 @@ use crate::sky::Peaked;
 use crate::sky::View;
 use crate::spectrum::Spectrum;
 use crate::transfer::PathOptics;
+use crate::transfer::residual::HalfAngle;
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -96,7 +97,7 @@ impl<const N: usize> AerialPerspective<N> {
             distance: along(length_m / (end_m - start_m)),
         };
         let along = self.extinction(half, &place) * length_m as f32;
-        let source = self.source(half, &place, 0.5 * direction.distance(self.sun));
+        let source = self.source(half, &place, HalfAngle::between(direction, self.sun));
         PathOptics {
             transmittance: along.exp_neg(),
             path_radiance: source * along * along.mean_transmittance(),
@@ -142,10 +143,10 @@ impl<const N: usize> AerialPerspective<N> {
     }
 
     #[inline(always)]
-    fn source(&self, half: &Half, place: &Place, half_sine: f64) -> Spectrum<N> {
+    fn source(&self, half: &Half, place: &Place, angle: HalfAngle<f32>) -> Spectrum<N> {
         let width = N.next_multiple_of(STEP);
         let parts = 1 + self.peaked.parts.len();
-        let factors = self.peaked.factors(half_sine);
+        let factors = self.peaked.factors(angle);
         let mut lanes = Spectrum::ZERO;
         // Adds values of a cell from the index `first` on to their lanes, multiplied by their phase functions.
         let mut add = |first: usize, values: &[f32]| {
@@ -154,7 +155,7 @@ impl<const N: usize> AerialPerspective<N> {
                 if lane < N {
                     let factor = match part {
                         0 => 1.0,
-                        _ => factors.get((part - 1) * N + lane),
+                        _ => factors.get(part - 1, lane),
                     };
                     lanes[lane] += factor * value;
                 }

@@ -6,6 +6,7 @@ use super::lane_channels::{Converter, LaneChannels};
 use crate::control::{Cancelled, Control};
 use crate::math::parallel;
 use crate::sky::{Peaked, View};
+use crate::transfer::residual::HalfAngle;
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
@@ -134,7 +135,7 @@ fn row_of<const N: usize>(
         .collect();
     let rays = view.samples_along_rays(&directions, &stops_m, &peaked.parts, &converter.used());
     for (azimuth, (direction, stops)) in directions.iter().zip(rays).enumerate() {
-        let phases = peaked.phases(0.5 * direction.distance(view.sun()));
+        let phases = peaked.phases(HalfAngle::between(*direction, view.sun()));
         for (stop, stop_m) in stops.iter().zip(&stops_m) {
             let opacity = converter.opacity(&stop.depth).map(|a| a.min(1.0 - OPAQUE));
             if azimuth == 0 {
@@ -153,7 +154,7 @@ fn row_of<const N: usize>(
                 let source_of = |lane: usize| {
                     let phase = match index.checked_sub(1).map(|part| peaked.parts[part]) {
                         None => 1.0,
-                        Some(part) => f64::from(phases.get(part.peaked * N + lane)),
+                        Some(part) => f64::from(phases.get(part.peaked, lane)),
                     };
                     match opacity[lane] == 0.0 {
                         true => 0.0,

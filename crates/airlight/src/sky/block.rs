@@ -17,7 +17,7 @@ use crate::math::simd::vectorized;
 use crate::spectrum::Spectrum;
 use crate::transfer::columns::SlantColumns;
 use crate::transfer::ray::Ray;
-use crate::transfer::residual::{STREAMS, combined};
+use crate::transfer::residual::{HalfAngle, STREAMS, combined};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -498,7 +498,6 @@ impl<const N: usize> Solved<N> {
         peaked: &Peaked,
         cell: &mut [f32],
     ) {
-        let channels = weights.len();
         let nu = row.bundle.nu[slot];
         let mut smooth = light.multiple_scatter[slot];
         for (place, s) in self.dimming().scatterers.iter().enumerate() {
@@ -509,11 +508,11 @@ impl<const N: usize> Solved<N> {
                     continue;
                 }
                 is_peaked = true;
-                let phases = peaked.phases((0.5 * (1.0 - nu)).max(0.0).sqrt());
-                let out = &mut cell[(1 + index) * channels..][..channels];
+                let phases = peaked.phases(HalfAngle::of_cosine(nu));
+                let out = &mut cell[(1 + index) * peaked.width..];
                 let value = light.stream(place, part.stream, slot) * phase;
                 for (channel, (out, weights)) in out.iter_mut().zip(weights).enumerate() {
-                    let mean = phases.get(part.peaked * channels + channel);
+                    let mean = phases.get(part.peaked, channel);
                     *out += sum_of_lanes(weights, &value) / mean;
                 }
             }

@@ -4,9 +4,10 @@
 //! ([`crate::transfer::residual`]): what a channel stores of it has been divided by the mean phase function of the channel, and a
 //! pixel multiplies it by that mean and by the share of the stream.
 
-use crate::math::interpolation::{Place, lerp};
+use crate::math::interpolation::lerp;
 use crate::math::parallel;
-use crate::transfer::residual::{STREAMS, coordinate, cosine_of, half_sine_of};
+use crate::transfer::residual::{HalfAngle, STREAMS, cosine_at};
+use glam::Vec4;
 
 /// Number of intervals of a sampled phase function.
 const SAMPLES: usize = 1024;
@@ -26,9 +27,11 @@ pub(crate) struct Part {
 pub(crate) struct Peaked {
     /// The light that is tabulated apart.
     pub parts: Vec<Part>,
-    /// Mean phase functions (1/sr): `[sample][constituent][channel]`.
+    /// Number of values of a part: its channels, padded for vector loads.
+    pub width: usize,
+    /// Mean phase functions (1/sr): `[sample][constituent][channel]`, padded.
     phases: Vec<f32>,
-    /// Mean phase functions times the share of the stream (1/sr): `[sample][part][channel]`.
+    /// Mean phase functions times the share of the stream (1/sr): `[sample][part][channel]`, padded.
     factors: Vec<f32>,
 }
 
@@ -43,26 +46,54 @@ pub struct Scattered {
     pub shares: [Vec<f32>; STREAMS],
 }
 
+/// Place of an angle among the samples.
+#[derive(Clone, Copy)]
+pub(crate) struct SamplePlace {
+    below: i32,
+    fraction: f32,
+}
+
+impl SamplePlace {
+    /// The place of forward scattering.
+    pub const FORWARDS: Self = Self {
+        below: 0,
+        fraction: 0.0,
+    };
+
+    /// The place of an angle.
+    #[inline(always)]
+    pub fn of(angle: HalfAngle<f32>) -> Self {
+        let position = angle.coordinate().clamp(0.0, 1.0) * SAMPLES as f32;
+        let below = (position as i32).min(SAMPLES as i32 - 1);
+        Self {
+            below,
+            fraction: position - below as f32,
+        }
+    }
+}
+
 /// Values at an angle, between two samples.
 #[derive(Clone, Copy)]
 pub(crate) struct Between<'a> {
     below: &'a [f32],
     above: &'a [f32],
+    width: usize,
     fraction: f32,
 }
 
 impl Between<'_> {
-    /// Value by index.
+    /// Value of a part or constituent in a channel.
     #[inline(always)]
-    pub fn get(&self, index: usize) -> f32 {
+    pub fn get(&self, part: usize, channel: usize) -> f32 {
+        let index = part * self.width + channel;
         lerp(self.below[index], self.above[index], self.fraction)
     }
 
-    /// Values of a part in all of `C` channels.
+    /// Four values from an index on.
     #[inline(always)]
-    pub fn channels<const C: usize>(&self, part: usize) -> [f32; C] {
-        let [below, above] = [self.below, self.above].map(|values| &values[part * C..][..C]);
-        std::array::from_fn(|channel| lerp(below[channel], above[channel], self.fraction))
+    pub fn four(&self, first: usize) -> Vec4 {
+        let [below, above] = [self.below, self.above].map(|v| Vec4::from_slice(&v[first..]));
+        lerp(below, above, self.fraction)
     }
 }
 
@@ -87,7 +118,7 @@ impl Peaked {
             })
             .collect();
         let samples = parallel::map(SAMPLES + 1, |sample| {
-            let nu = cosine_of(half_sine_of(sample as f64 / SAMPLES as f64));
+            let nu = cosine_at(sample as f64 / SAMPLES as f64);
             let (mut phases, mut factors) = (Vec::new(), Vec::new());
             for (peaked, &(constituent, _)) in constituents.iter().enumerate() {
                 let Scattered {
@@ -125,44 +156,56 @@ impl Peaked {
                 .map(|(mean, own)| if *own { *mean } else { means.all })
                 .collect()
         };
+        let width = channels.next_multiple_of(4);
+        let append = |all: &mut Vec<f32>, values: Vec<f32>| {
+            all.extend(values);
+            all.resize(all.len().next_multiple_of(width), 0.0);
+        };
         let (mut phases, mut factors) = (Vec::new(), Vec::new());
         for (at_sample, by_part) in &samples {
             for (peaked, means) in at_sample.iter().enumerate() {
-                phases.extend(values(means, peaked));
+                append(&mut phases, values(means, peaked));
             }
             for (part, means) in parts.iter().zip(by_part) {
-                factors.extend(values(means, part.peaked));
+                append(&mut factors, values(means, part.peaked));
             }
         }
         Self {
             parts,
+            width,
             phases,
             factors,
         }
     }
 
-    /// Mean phase functions at the sine of half the scattering angle: `[constituent][channel]`.
+    /// Mean phase functions of the constituents at an angle.
     #[inline(always)]
-    pub fn phases(&self, half_sine: f64) -> Between<'_> {
-        between(&self.phases, half_sine)
+    pub fn phases(&self, angle: HalfAngle<f32>) -> Between<'_> {
+        self.between(&self.phases, SamplePlace::of(angle))
     }
 
-    /// What pixels multiply the parts by, at the sine of half the scattering angle: `[part][channel]`.
+    /// What pixels multiply the parts by, at an angle.
     #[inline(always)]
-    pub fn factors(&self, half_sine: f64) -> Between<'_> {
-        between(&self.factors, half_sine)
+    pub fn factors(&self, angle: HalfAngle<f32>) -> Between<'_> {
+        self.factors_at(SamplePlace::of(angle))
     }
-}
 
-#[inline(always)]
-fn between(values: &[f32], half_sine: f64) -> Between<'_> {
-    let width = values.len() / (SAMPLES + 1);
-    let Place { below, fraction } = Place::evenly(coordinate(half_sine), SAMPLES + 1);
-    let (below, above) = values[below * width..][..2 * width].split_at(width);
-    Between {
-        below,
-        above,
-        fraction: fraction as f32,
+    /// As [`Peaked::factors`], at the place of the angle.
+    #[inline(always)]
+    pub fn factors_at(&self, place: SamplePlace) -> Between<'_> {
+        self.between(&self.factors, place)
+    }
+
+    #[inline(always)]
+    fn between<'a>(&self, values: &'a [f32], place: SamplePlace) -> Between<'a> {
+        let stride = values.len() / (SAMPLES + 1);
+        let (below, above) = values[place.below as usize * stride..][..2 * stride].split_at(stride);
+        Between {
+            below,
+            above,
+            width: self.width,
+            fraction: place.fraction,
+        }
     }
 }
 

@@ -6,6 +6,7 @@ use super::table::{SkyTable, TableChannels};
 use super::view::View;
 use crate::debug::debug_fields;
 use crate::math::parallel;
+use crate::transfer::residual::HalfAngle;
 use glam::DVec3;
 
 /// A view whose light is split in two parts that tables can hold: light that constituents with a peaked phase function scatter once,
@@ -61,8 +62,7 @@ impl SplitView {
         let direction = horizontal * elevation.cos() + DVec3::Y * elevation.sin();
         let channels = table.channels();
         let values = table.parts(direction);
-        let used = channels * (1 + table.peaked.parts.len());
-        let mut toward_sun = values[channels..used].to_vec();
+        let mut toward_sun = values[channels..].to_vec();
         // Without light from there, such as at night or beyond the limb, the first stream alone.
         for (index, value) in toward_sun.iter_mut().enumerate() {
             let first = table.peaked.parts[index / channels].stream == 0;
@@ -100,10 +100,10 @@ impl SplitView {
         /// A floor, as the mean can be 0 between bows.
         const SMALLEST: f32 = 1e-4;
         let channels = self.table.channels();
-        let factors = self.peaked().factors(half_sine(cos_angle));
+        let factors = self.peaked().factors(HalfAngle::of_cosine(cos_angle));
         let (mut light, mut whole) = (vec![0.0f32; channels], vec![0.0f32; channels]);
         for (index, value) in self.toward_sun.iter().enumerate() {
-            light[index % channels] += factors.get(index) * value;
+            light[index % channels] += factors.get(index / channels, index % channels) * value;
             if self.peaked().parts[index / channels].stream == 0 {
                 whole[index % channels] += value;
             }
@@ -119,9 +119,9 @@ impl SplitView {
     pub fn radiance(&self, direction: DVec3) -> SplitLight {
         let channels = self.table.channels();
         let values = self.table.parts(direction);
-        let peaked = &values[channels..channels * (1 + self.peaked().parts.len())];
+        let (smooth, peaked) = values.split_at(channels);
         SplitLight {
-            smooth: values[..channels].iter().map(|v| v.max(0.0)).collect(),
+            smooth: smooth.iter().map(|v| v.max(0.0)).collect(),
             peaked: self.without_phase(direction, peaked),
         }
     }
@@ -146,13 +146,13 @@ impl SplitView {
             .samples_along_rays(directions, distances_m, &peaked.parts, &used);
         let along = |(direction, samples): (&DVec3, Vec<SampleLight>)| {
             let cos_angle = direction.dot(self.view.sun());
-            let phases = peaked.phases(half_sine(cos_angle));
+            let phases = peaked.phases(HalfAngle::of_cosine(cos_angle));
             let converted = samples.into_iter().take(distances_m.len()).map(|sample| {
                 let mut parts = Vec::new();
                 for (part, values) in peaked.parts.iter().zip(&sample.path[1..]) {
                     let without = lit(values).into_iter().enumerate();
                     parts.extend(without.map(|(channel, value)| {
-                        let phase = phases.get(part.peaked * channels + channel);
+                        let phase = phases.get(part.peaked, channel);
                         value / phase.max(f32::MIN_POSITIVE)
                     }));
                 }
@@ -176,19 +176,15 @@ impl SplitView {
     fn without_phase(&self, direction: DVec3, parts: &[f32]) -> Vec<f32> {
         let channels = self.table.channels();
         let cos_angle = direction.dot(self.view.sun());
-        let factors = self.peaked().factors(half_sine(cos_angle));
+        let factors = self.peaked().factors(HalfAngle::of_cosine(cos_angle));
         let mut light = vec![0.0f32; channels];
         for (index, value) in parts.iter().enumerate() {
-            light[index % channels] += factors.get(index) * value;
+            light[index % channels] += factors.get(index / channels, index % channels) * value;
         }
         let phase = self.phase(cos_angle);
         let divided = light.iter().zip(&phase).map(|(l, p)| (l / p).max(0.0));
         divided.collect()
     }
-}
-
-fn half_sine(cos_angle: f64) -> f64 {
-    (0.5 * (1.0 - cos_angle)).clamp(0.0, 1.0).sqrt()
 }
 
 #[cfg(test)]

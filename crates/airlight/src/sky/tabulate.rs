@@ -3,7 +3,9 @@
 use super::block::{ChannelMatrix, TableRow};
 use super::peaked::{Peaked, Scattered};
 use super::ray_bundle::RayBundle;
-use super::table::{AZIMUTHS, Band, STEPS_ABOVE, STEPS_BELOW, SkyTable, TableChannels};
+use super::table::{
+    AZIMUTHS, Band, Rows, STEPS_ABOVE, STEPS_BELOW, SkyTable, TableChannels, with_mirrored_columns,
+};
 use super::view::View;
 use crate::atmosphere::Constituent;
 use crate::control::{Cancelled, Control};
@@ -40,10 +42,12 @@ impl SkyTable {
         let peaked = Peaked::of(view, channel_count, |spectrum| {
             in_channels(&matrices, spectrum)
         });
-        let width = (channel_count * (1 + peaked.parts.len())).next_multiple_of(4);
+        let width = peaked.width * (1 + peaked.parts.len());
         let azimuth_rad = |k| PI * coordinates.azimuth(k as f64 / AZIMUTHS as f64);
         let azimuths_rad: Vec<f64> = (0..=AZIMUTHS).map(azimuth_rad).collect();
-        let band = |places: [f64; 2], steps: usize, is_below: bool| {
+        let mut values = Vec::new();
+        let mut band = |places: [f64; 2], steps: usize, is_below: bool| {
+            let first = values.len() / (AZIMUTHS + 1) / width;
             let rows = steps + 1;
             let elevations = (0..rows).map(|row| {
                 let part = row as f64 / steps as f64;
@@ -52,16 +56,12 @@ impl SkyTable {
             });
             let row = |elevation_rad| TableRow::new(view, elevation_rad, &azimuths_rad);
             let table_rows: Vec<TableRow> = elevations.map(row).collect();
-            let mut values = vec![0.0; rows * (AZIMUTHS + 1) * width];
+            let mut filled = vec![0.0; rows * (AZIMUTHS + 1) * width];
             for (block, matrix) in sky.blocks().iter().zip(&matrices) {
-                block.fill(&table_rows, matrix, &peaked, width, &mut values, control)?;
+                block.fill(&table_rows, matrix, &peaked, width, &mut filled, control)?;
             }
-            Ok(Band {
-                first: places[0],
-                per_place: (places[1] - places[0]).recip(),
-                rows,
-                values,
-            })
+            values.append(&mut filled);
+            Ok(Band::new(places, first, steps))
         };
         let kink = coordinates.kink_place;
         let steps_below_kink = (kink * STEPS_ABOVE as f64).round() as usize;
@@ -69,6 +69,8 @@ impl SkyTable {
             0 => None,
             steps => Some(band([0.0, kink], steps, false)?),
         };
+        let above = band([kink, 1.0], STEPS_ABOVE - steps_below_kink, false)?;
+        let below = band([0.0, 1.0], STEPS_BELOW, true)?;
         let horizontal = DVec3::new(view.sun().x, 0.0, view.sun().z);
         Ok(Self {
             channels: channel_count,
@@ -80,10 +82,13 @@ impl SkyTable {
             } else {
                 DVec3::X
             },
-            above: band([kink, 1.0], STEPS_ABOVE - steps_below_kink, false)?,
-            below_kink,
-            below: band([0.0, 1.0], STEPS_BELOW, true)?,
-            coordinates,
+            rows: Rows {
+                coordinates,
+                above,
+                below_kink,
+                below,
+            },
+            values: with_mirrored_columns(&values, width),
             peaked,
         })
     }

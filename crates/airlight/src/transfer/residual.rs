@@ -26,9 +26,11 @@
 use super::delta_m::peak_fraction;
 use crate::math::interpolation::{Place, lerp};
 use crate::math::parallel;
+use crate::math::real::Real;
 use crate::math::simd::vectorized;
 use crate::optics::PhaseFunction;
 use crate::spectrum::Spectrum;
+use glam::DVec3;
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
@@ -89,33 +91,61 @@ const MIN_FRACTION: f64 = 1e-3;
 /// The streams of a phase function at N wavelengths.
 #[derive(Clone, Debug)]
 pub struct Residual<const N: usize> {
-    /// Shares of the second and third stream at even steps of [`coordinate`].
+    /// Shares of the second and third stream at even steps of [`HalfAngle::coordinate`].
     shares: Vec<[Spectrum<N>; STREAMS - 1]>,
 }
 
-/// Coordinate from 0 to 1 of the sine of half the scattering angle, dense at both ends.
-#[inline(always)]
-pub(crate) fn coordinate(half_sine: f64) -> f64 {
-    let half_cosine = ((1.0 - half_sine) * (1.0 + half_sine)).max(0.0).sqrt();
-    0.5 * (1.0 + half_sine.sqrt() - half_cosine.sqrt())
+/// Half a scattering angle, by squares that are accurate forwards and backwards.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct HalfAngle<T> {
+    /// Square of the sine.
+    pub sine2: T,
+    /// Square of the cosine.
+    pub cosine2: T,
 }
 
-/// Inverse of [`coordinate`].
-pub(crate) fn half_sine_of(x: f64) -> f64 {
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        match coordinate(middle) < x {
-            true => low = middle,
-            false => high = middle,
+impl<T: Real> HalfAngle<T> {
+    /// Of the cosine of an angle.
+    #[inline(always)]
+    pub fn of_cosine(cosine: f64) -> Self {
+        Self {
+            sine2: T::of((0.5 * (1.0 - cosine)).max(0.0)),
+            cosine2: T::of((0.5 * (1.0 + cosine)).max(0.0)),
         }
     }
-    0.5 * (low + high)
+
+    /// Of the angle between two unit vectors.
+    #[inline(always)]
+    pub fn between(a: DVec3, b: DVec3) -> Self {
+        Self {
+            sine2: T::of(0.25 * (a - b).length_squared()),
+            cosine2: T::of(0.25 * (a + b).length_squared()),
+        }
+    }
+
+    /// Coordinate from 0 forwards to 1 backwards, dense at both ends.
+    #[inline(always)]
+    pub fn coordinate(self) -> T {
+        T::of(0.5) * (T::of(1.0) + self.sine2.sqrt().sqrt() - self.cosine2.sqrt().sqrt())
+    }
 }
 
-/// Cosine of the angle of the sine of its half.
-#[inline(always)]
-pub(crate) fn cosine_of(half_sine: f64) -> f64 {
+/// Cosine of the angle at a [`HalfAngle::coordinate`].
+pub(crate) fn cosine_at(x: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..60 {
+        let half_sine: f64 = 0.5 * (low + high);
+        let sine2 = half_sine * half_sine;
+        let angle = HalfAngle {
+            sine2,
+            cosine2: 1.0 - sine2,
+        };
+        match angle.coordinate() < x {
+            true => low = half_sine,
+            false => high = half_sine,
+        }
+    }
+    let half_sine = 0.5 * (low + high);
     1.0 - 2.0 * half_sine * half_sine
 }
 
@@ -124,7 +154,7 @@ const EXACT: (f64, f64) = (2.0, 5.0);
 
 /// Cosines of the angles of the table.
 static COSINES: LazyLock<Vec<f64>> = LazyLock::new(|| {
-    let cosine = |k: usize| cosine_of(half_sine_of(k as f64 / INTERVALS as f64));
+    let cosine = |k: usize| cosine_at(k as f64 / INTERVALS as f64);
     (0..=INTERVALS).map(cosine).collect()
 });
 
@@ -206,8 +236,8 @@ impl<const N: usize> Residual<N> {
     /// Shares at the cosine `nu` of the scattering angle.
     #[inline]
     pub fn shares(&self, nu: f64) -> Shares<N> {
-        let half_sine = (0.5 * (1.0 - nu)).clamp(0.0, 1.0).sqrt();
-        let Place { below, fraction } = Place::evenly(coordinate(half_sine), INTERVALS + 1);
+        let x = HalfAngle::of_cosine(nu).coordinate();
+        let Place { below, fraction } = Place::evenly(x, INTERVALS + 1);
         let (a, b) = (&self.shares[below], &self.shares[below + 1]);
         let [half, all] = [0, 1].map(|k| lerp(a[k], b[k], fraction as f32));
         [Spectrum::ONE - half - all, half, all]
@@ -221,10 +251,10 @@ impl<const N: usize> Residual<N> {
         let mut below = [0; R];
         let mut fractions = [0.0; R];
         for i in 0..R {
-            let half_sine = (0.5 * (1.0 - nu[i])).clamp(0.0, 1.0).sqrt();
-            let position = coordinate(half_sine).clamp(0.0, 1.0) * INTERVALS as f64;
+            let x: f32 = HalfAngle::of_cosine(nu[i]).coordinate();
+            let position = x.clamp(0.0, 1.0) * INTERVALS as f32;
             below[i] = (position as i32).min(INTERVALS as i32 - 1);
-            fractions[i] = (position - f64::from(below[i])) as f32;
+            fractions[i] = position - below[i] as f32;
         }
         let mut shares = [[Spectrum::ZERO; N]; STREAMS];
         for i in 0..R {
