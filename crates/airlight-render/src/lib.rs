@@ -54,3 +54,8 @@ pub use manifest::ManifestError;
 pub use renderer::Renderer;
 pub use shard::Shard;
 pub use solutions::Solutions;
+
+/// An example of the book, compiled as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/src/scenes.md")]
+struct BookOfScenes;

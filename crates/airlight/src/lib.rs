@@ -78,3 +78,12 @@ pub mod dependencies {
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+/// Examples of the book, compiled as tests.
+#[cfg(doctest)]
+mod book {
+    #[doc = include_str!("../../../docs/src/getting-started.md")]
+    struct GettingStarted;
+    #[doc = include_str!("../../../docs/src/path-optics.md")]
+    struct PathOptics;
+}
