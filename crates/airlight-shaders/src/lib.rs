@@ -49,3 +49,8 @@ pub use sky_tables::{SingleScatteringTable, SkyTables, SkyTablesError};
 #[cfg(feature = "translate")]
 pub use translate::{Language, TranslateError, translate};
 pub use wavelengths::{WAVELENGTHS_NM, wavelength_grid};
+
+/// The example of the book, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/src/shaders.md")]
+struct Book;

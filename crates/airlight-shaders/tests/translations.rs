@@ -45,32 +45,59 @@ fn translations_define_every_function_once_under_its_name() {
     }
 }
 
-/// The pass in HLSL with the translated functions, as a host compiles it.
+/// The passes in HLSL and GLSL with the translated functions, as hosts compile them.
 #[test]
-fn glslang_accepts_the_pass_in_hlsl() {
+fn glslang_accepts_the_passes() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let binary = std::env::temp_dir().join(format!("airlight-pass-{}.spv", std::process::id()));
-    let output = Command::new("glslangValidator")
-        .args(["-D", "-V", "-S", "frag", "-e", "add_fog"])
-        .arg(format!("-I{}", folder.join("generated/hlsl").display()))
-        .arg(folder.join("examples/passes/fog_pass.hlsl"))
-        .arg("-o")
-        .arg(&binary)
-        .output();
-    let Ok(output) = output else {
-        println!("glslangValidator is not installed: skipped");
-        return;
-    };
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stdout)
-    );
-    std::fs::remove_file(&binary).unwrap();
+    for (language, file, options) in [
+        (
+            Language::Hlsl,
+            "fog_pass.hlsl",
+            &["-D", "-e", "add_fog"][..],
+        ),
+        (Language::Glsl450, "fog_pass.frag", &[]),
+    ] {
+        let binary = std::env::temp_dir().join(format!(
+            "airlight-pass-{}-{}.spv",
+            std::process::id(),
+            language.name()
+        ));
+        let included = folder.join("generated").join(language.name());
+        let output = Command::new("glslangValidator")
+            .args(["-V", "-S", "frag"])
+            .args(options)
+            .arg(format!("-I{}", included.display()))
+            .arg(folder.join("examples/passes").join(file))
+            .arg("-o")
+            .arg(&binary)
+            .output();
+        let Ok(output) = output else {
+            println!("glslangValidator is not installed: skipped");
+            return;
+        };
+        assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stdout)
+        );
+        assert_valid(&binary);
+    }
 }
 
-/// GLSL and HLSL in a fragment shader of a host, by glslangValidator (Debian: glslang-tools), and the SPIR-V that it makes of HLSL
-/// by spirv-val (Debian: spirv-tools).
+/// Asks spirv-val (Debian: spirv-tools), where it is installed, for its opinion of a file, and removes that.
+fn assert_valid(binary: &Path) {
+    match Command::new("spirv-val").arg(binary).output() {
+        Ok(output) => assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        ),
+        Err(_) => println!("spirv-val is not installed: SPIR-V is not checked"),
+    }
+    std::fs::remove_file(binary).unwrap();
+}
+
+/// GLSL and HLSL in a fragment shader of a host, by glslangValidator (Debian: glslang-tools), and the SPIR-V that it makes of HLSL.
 #[test]
 fn glslang_accepts_the_translations() {
     if Command::new("glslangValidator")
@@ -118,15 +145,7 @@ fn glslang_accepts_the_translations() {
             String::from_utf8_lossy(&output.stdout)
         );
         if language == Language::Hlsl {
-            match Command::new("spirv-val").arg(&binary).output() {
-                Ok(output) => assert!(
-                    output.status.success(),
-                    "{}",
-                    String::from_utf8_lossy(&output.stderr)
-                ),
-                Err(_) => println!("spirv-val is not installed: SPIR-V is not checked"),
-            }
-            std::fs::remove_file(&binary).unwrap();
+            assert_valid(&binary);
         }
     }
 }
