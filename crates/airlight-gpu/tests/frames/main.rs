@@ -214,7 +214,7 @@ fn rgb_of(grid: &WavelengthGrid, light: &[f32]) -> [f64; 3] {
 fn lighting_is_that_of_the_solver() {
     let gpu = Headless::new().unwrap();
     // Harmonics of degree 2 cannot follow light that comes from beside the horizon.
-    for (sun_deg, limit) in [(50.0, 0.05), (5.0, 0.15)] {
+    for (sun_deg, limit) in [(50.0, 0.045), (5.0, 0.1)] {
         let sun = axes::direction(140.0, sun_deg);
         let mut renderer = renderer(&gpu, Preset::Clear, sun_deg, 2.0);
         assert!(renderer.lighting().is_none());
@@ -246,7 +246,7 @@ fn lighting_is_that_of_the_solver() {
         let sky_error = sky_error.fold(0.0, f64::max);
         println!("sun {sun_deg}: illuminance by the sun {sun_error:.4}, by the sky {sky_error:.3}");
         assert!(
-            sun_error < 0.02 && sky_error < limit,
+            sun_error < 0.002 && sky_error < limit,
             "{sun_error} {sky_error}"
         );
     }
@@ -303,7 +303,7 @@ fn fog_has_any_profile_of_its_documentation() {
 #[test]
 fn lighting_in_fog_is_that_of_the_library() {
     let gpu = Headless::new().unwrap();
-    for sun_deg in [50.0, 10.0] {
+    for (sun_deg, limit) in [(50.0, 0.02), (10.0, 0.09)] {
         let sun = axes::direction(140.0, sun_deg);
         let mut renderer = renderer(&gpu, Preset::Clear, sun_deg, 0.0);
         renderer.update(0.0, sun).unwrap();
@@ -341,7 +341,7 @@ fn lighting_in_fog_is_that_of_the_library() {
             );
             let error = (horizontal(&light) / on_ground - 1.0).abs().max_element();
             println!("sun {sun_deg}, {extinction_per_m} 1/m: {error:.4}");
-            assert!(error < 0.1, "{error}");
+            assert!(error < limit, "{error}");
         }
     }
 }
@@ -408,7 +408,7 @@ fn lights_in_fog_are_those_of_the_library() {
         }
     }
     println!("{:.4} at {}", worst.0, worst.1);
-    assert!(worst.0 < 0.04, "{worst:?}");
+    assert!(worst.0 < 0.003, "{worst:?}");
     renderer.set_lights(&[]).unwrap();
     assert_eq!(draw(&mut renderer), dark);
 }
@@ -509,7 +509,8 @@ fn an_environment_map_holds_what_surfaces_reflect() {
     renderer.record_environment(&mut encoder, &mut map, exposure);
     gpu.queue.submit([encoder.finish()]);
     let mean = right(Vec3::Y).y;
-    for level in 0..map.levels() {
+    let limits = [0.005, 0.015, 0.02, 0.03, 0.045];
+    for (level, limit) in (0..map.levels()).zip(limits) {
         let roughness = level as f32 / 4.0;
         let directions: Vec<Vec3> = match level {
             // Texels across the horizon hold both sides.
@@ -527,7 +528,7 @@ fn an_environment_map_holds_what_surfaces_reflect() {
         });
         let worst = errors.fold((0.0, Vec3::ZERO), |a, b| if b.0 > a.0 { b } else { a });
         println!("level {level}: {:.4} at {}", worst.0, worst.1);
-        assert!(worst.0 < 0.05, "level {level}");
+        assert!(worst.0 < limit, "level {level}: {worst:?}");
     }
 }
 
