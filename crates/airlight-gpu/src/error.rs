@@ -26,6 +26,14 @@ pub enum SkyRendererError {
          uniform fog, which lets no light in from above"
     )]
     FogProfile,
+    /// No layer of fog, or more of different density profiles than there may be.
+    #[error("expected 1 to {most} layers of fog of different density profiles, got {count}")]
+    FogLayers {
+        /// Number of density profiles.
+        count: usize,
+        /// [`MOST_FOG_LAYERS`](crate::MOST_FOG_LAYERS).
+        most: usize,
+    },
     /// More lights than a fog can hold.
     #[error("expected at most {most} lights in fog, got {count}; try the nearest and brightest")]
     TooManyLights {
@@ -37,9 +45,9 @@ pub enum SkyRendererError {
     /// A kind of light that the shaders do not have.
     #[error("expected point, spot and sphere lights")]
     LightKind,
-    /// Lights in a fog that is not exponential.
+    /// Lights in a fog that is not a single exponential layer.
     #[error(
-        "expected an exponential fog around lights, got another profile; try the fog without lights"
+        "expected a single exponential layer of fog around lights, got another fog; try the fog without lights"
     )]
     LightProfile,
     /// The device is lost.

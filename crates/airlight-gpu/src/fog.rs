@@ -14,20 +14,22 @@ use airlight_shaders::twins::exponentials::OPAQUE;
 use airlight_shaders::twins::fog::{
     FOG_CLAMPED, FOG_EXPONENTIAL, FOG_SLAB, FogLayer, FogMedium, fog_layer_column_m,
 };
-use airlight_shaders::twins::fog_table::{FogTableView, tabulated_fog};
+use airlight_shaders::twins::fog_table::FogTableView;
 use airlight_shaders::twins::lights::ExponentialFog;
 use airlight_shaders::twins::path_optics::{PathOptics, apply_path_optics};
-use airlight_shaders::twins::texture::LinearSampler;
 use airlight_shaders::{FogTables, SkyTables};
 use glam::Vec3;
 use std::f32::consts::PI;
 
-/// A layer of fog over flat ground, with all orders of scattering of the light of sun and sky.
+/// Largest number of density profiles in a fog. Layers of one profile count as one.
+pub const MOST_FOG_LAYERS: usize = 4;
+
+/// Layers of fog over flat ground, with all orders of scattering of the light of sun and sky.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fog {
-    /// The fog, in the RGB space of the target: exponential, clamped or with two edges. Uniform fog, without an upper edge, lets no light
-    /// in. Heights are above sea level, m.
-    pub layer: RgbLayer,
+    /// The layers, at most [`MOST_FOG_LAYERS`] of different density profiles, in the RGB space of the target: each exponential, clamped or
+    /// with two edges. Uniform fog, without an upper edge, lets no light in. Heights are above sea level, m.
+    pub layers: Vec<RgbLayer>,
     /// Height of the ground, m.
     pub ground_height_m: f64,
     /// Albedo of the ground, 0 to 1.
@@ -39,12 +41,12 @@ impl Fog {
     pub fn new(visibility_m: f64, scale_height_m: f64) -> Self {
         let extinction_per_m = visibility::extinction_per_m(visibility_m, Contrast::default());
         Self {
-            layer: RgbLayer {
+            layers: vec![RgbLayer {
                 density: DensityProfile::exponential(scale_height_m),
                 extinction_per_m: [extinction_per_m as f32; 3],
                 single_scattering_albedo: [1.0; 3],
                 phase: Droplets::default().phase(),
-            },
+            }],
             ground_height_m: 0.0,
             ground_albedo: [0.05, 0.1, 0.03],
         }
@@ -52,13 +54,22 @@ impl Fog {
 
     /// Checks the values.
     pub(crate) fn validate(&self) -> Result<(), SkyRendererError> {
-        self.profile().ok_or(SkyRendererError::FogProfile)?;
+        for layer in &self.layers {
+            profile(&layer.density).ok_or(SkyRendererError::FogProfile)?;
+        }
         let dark = FogLighting {
             sun: None,
             ambient: [0.0; 3],
             ground_albedo: self.ground_albedo,
         };
-        self.under(&dark, FogScattering::Single).map(drop)
+        let fog = self.under(&dark, FogScattering::Single)?;
+        match fog.profiles().len() {
+            1..=MOST_FOG_LAYERS => Ok(()),
+            count => Err(SkyRendererError::FogLayers {
+                count,
+                most: MOST_FOG_LAYERS,
+            }),
+        }
     }
 
     fn under(
@@ -70,15 +81,19 @@ impl Fog {
             height_m: self.ground_height_m,
             ..Ground::FLAT
         };
-        let layers = std::slice::from_ref(&self.layer);
-        Ok(RgbFog::new(layers, ground, lighting, scattering)?)
+        Ok(RgbFog::new(&self.layers, ground, lighting, scattering)?)
     }
 
     /// Height of the fog's effective top, m: sun and sky light the fog as they do there.
     pub(crate) fn top_m(&self) -> f64 {
-        effective_top_m(self.ground_height_m, |height_m| {
-            self.layer.density.column_above_m(height_m)
-        })
+        let depth_above = |height_m: f64| {
+            let depth = |layer: &RgbLayer| {
+                let extinction_per_m = layer.extinction_per_m.into_iter().fold(0.0, f32::max);
+                f64::from(extinction_per_m) * layer.density.column_above_m(height_m)
+            };
+            self.layers.iter().map(depth).sum()
+        };
+        effective_top_m(self.ground_height_m, depth_above)
     }
 
     /// The fog in the light of sun and sky at its top.
@@ -99,55 +114,47 @@ impl Fog {
         self.under(&lighting, FogScattering::Multiple)
     }
 
-    /// The tables of the lit fog in air, for an eye at a height above sea level, m.
-    pub(crate) fn tables(
+    /// The lit fog in air of a frame, for an eye at a height above sea level, m.
+    pub(crate) fn frame(
         &self,
         height_m: f64,
         lit: &RgbFog,
         air: &SkyTables,
-    ) -> Result<FogTables, SkyRendererError> {
-        Ok(FogTables::in_air(
-            lit,
-            height_m.max(self.ground_height_m),
-            air,
-        )?)
-    }
-
-    /// The fog of a frame, for an eye at a height above sea level, m.
-    pub(crate) fn frame(&self, tables: FogTables, height_m: f64) -> FogFrame {
-        let (profile, from_m, scale_m) = self.profile().expect("a profile that was checked");
-        FogFrame {
-            tables,
-            layer: FogLayer {
-                extinction_per_m: Vec3::from_array(self.layer.extinction_per_m),
+    ) -> Result<FogFrame, SkyRendererError> {
+        let layer = |(density, extinction_per_m): (&DensityProfile, [f32; 3])| {
+            let (profile, from_m, scale_m) = profile(density).expect("a profile that was checked");
+            FogLayer {
+                extinction_per_m: Vec3::from_array(extinction_per_m),
                 profile,
                 // The tables hold scattering and phase function.
                 scattering_per_m: Vec3::ZERO,
                 height_m: (from_m - self.ground_height_m) as f32,
                 phase: Vec3::ZERO,
                 scale_m: scale_m as f32,
-            },
+            }
+        };
+        Ok(FogFrame {
+            tables: FogTables::in_air(lit, height_m.max(self.ground_height_m), air)?,
+            layers: lit.profiles().map(layer).collect(),
             eye_height_m: (height_m - self.ground_height_m).max(0.0) as f32,
             around_lights: self.around_lights(),
-        }
+        })
     }
 
-    /// Profile, height (m) and scale (m) of the shader's struct `FogLayer`; `None` for a profile that it does not have.
-    pub(crate) fn profile(&self) -> Option<(u32, f64, f64)> {
-        profile(&self.layer.density)
-    }
-
-    /// The fog as lights see it, in which heights count from the ground; `None` for a fog that is not exponential above the ground.
+    /// The fog as lights see it, in which heights count from the ground; `None` for a fog that is not a single layer that is exponential
+    /// above the ground.
     pub(crate) fn around_lights(&self) -> Option<ExponentialFog> {
         /// Wavelength at which the mean cosine of the phase function is taken, nm.
         const MEAN_COSINE_NM: f64 = 550.0;
-        let (profile, reference_height_m, scale_height_m) = self.profile()?;
+        let [layer] = &self.layers[..] else {
+            return None;
+        };
+        let (profile, reference_height_m, scale_height_m) = profile(&layer.density)?;
         let is_exponential = match profile {
             FOG_EXPONENTIAL => true,
             FOG_CLAMPED => reference_height_m <= self.ground_height_m,
             _ => false,
         };
-        let layer = &self.layer;
         let extinction_per_m = Vec3::from_array(layer.extinction_per_m);
         let albedo = Vec3::from_array(layer.single_scattering_albedo);
         is_exponential.then_some(ExponentialFog {
@@ -168,11 +175,11 @@ impl Fog {
 pub struct FogFrame {
     /// Light of the fog for the eye and the sun.
     pub tables: FogTables,
-    /// Extinction and profile; heights are above the ground.
-    pub layer: FogLayer,
+    /// Extinction and profile of the layers that the tables have views of; heights are above the ground.
+    pub layers: Vec<FogLayer>,
     /// Height of the eye above the ground, m.
     pub eye_height_m: f32,
-    /// The fog around lights; `None` if it is not exponential above the ground.
+    /// The fog around lights; `None` if it is not a single layer that is exponential above the ground.
     pub around_lights: Option<ExponentialFog>,
 }
 
@@ -189,18 +196,11 @@ impl FogFrame {
             false => INFINITE_M,
         };
         let ray = ray_segment(self.eye_height_m, direction.y, length_m, 0.0);
-        let column_m = fog_layer_column_m(self.layer, ray);
-        let depth = (self.layer.extinction_per_m * column_m).min(Vec3::splat(OPAQUE));
-        let tables = &self.tables;
-        tabulated_fog(
-            tables.view,
-            &tables.diffuse,
-            &tables.streams,
-            &tables.stream_phase,
-            LinearSampler,
-            direction,
-            depth,
-        )
+        let depth = |layer: &FogLayer| {
+            let column_m = fog_layer_column_m(*layer, ray);
+            (layer.extinction_per_m * column_m).min(Vec3::splat(OPAQUE))
+        };
+        self.tables.path(direction, self.layers.iter().map(depth))
     }
 
     /// Uploads the tables: for all light of the fog, and for the sunlight that it scatters once.
@@ -212,32 +212,44 @@ impl FogFrame {
         let tables = &self.tables;
         let textures = [&tables.diffuse, &tables.streams, &tables.stream_phase];
         let textures = Tables::new(device, &textures);
-        let once = FogTableView {
+        let once = |view: &FogTableView| FogTableView {
             diffuse_scale: 0.0,
-            ..tables.view
+            ..*view
         };
-        [tables.view, once].map(|view| textures.group(device.0, layout, &self.numbers(&view)))
+        [
+            tables.views.clone(),
+            tables.views.iter().map(once).collect(),
+        ]
+        .map(|views| textures.group(device.0, layout, &self.numbers(&views)))
     }
 
     /// The numbers of the shader's struct `Fog`.
-    fn numbers(&self, view: &FogTableView) -> Vec<f32> {
-        let layer = &self.layer;
-        let mut all = view.sun.to_array().to_vec();
-        all.push(view.below_per_sine);
-        all.extend(view.depth_below.to_array());
-        all.push(view.above_per_sine);
-        all.extend(view.depth_above.to_array());
-        all.extend([view.diffuse_scale, view.sunlit_scale, 0.0, 0.0, 0.0]);
-        all.extend(layer.extinction_per_m.to_array());
-        all.push(f32::from_bits(layer.profile));
-        all.extend(layer.scattering_per_m.to_array());
-        all.push(layer.height_m);
-        all.extend(layer.phase.to_array());
-        all.push(layer.scale_m);
-        all.extend([self.eye_height_m, 0.0, 0.0, 0.0]);
+    fn numbers(&self, views: &[FogTableView]) -> Vec<f32> {
+        let mut all = Vec::with_capacity(MOST_FOG_LAYERS * LAYER_NUMBERS + 4);
+        for (view, layer) in views.iter().zip(&self.layers) {
+            all.extend(view.sun.extend(view.below_per_sine).to_array());
+            all.extend(view.depth_below.extend(view.above_per_sine).to_array());
+            all.extend(view.depth_above.extend(view.diffuse_scale).to_array());
+            all.extend([
+                view.sunlit_scale,
+                view.layer,
+                view.layer_count,
+                view.phase_count,
+            ]);
+            let profile = f32::from_bits(layer.profile);
+            all.extend(layer.extinction_per_m.extend(profile).to_array());
+            all.extend(layer.scattering_per_m.extend(layer.height_m).to_array());
+            all.extend(layer.phase.extend(layer.scale_m).to_array());
+        }
+        all.resize(MOST_FOG_LAYERS * LAYER_NUMBERS, 0.0);
+        let count = f32::from_bits(self.layers.len() as u32);
+        all.extend([count, self.eye_height_m, 0.0, 0.0]);
         all
     }
 }
+
+/// Numbers of the shader's struct `SeenLayer`.
+const LAYER_NUMBERS: usize = 28;
 
 /// Profile, height (m) and scale (m) of the shader's struct `FogLayer`.
 fn profile(density: &DensityProfile) -> Option<(u32, f64, f64)> {

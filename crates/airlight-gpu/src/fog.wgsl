@@ -1,9 +1,18 @@
 // The fog of the passes of medium.wgsl, behind the functions of airlight-shaders and frame.wgsl.
 
-struct Fog {
+const MOST_FOG_LAYERS: u32 = 4u;
+
+/// A layer of fog seen from the eye: the view of its tables, and its column.
+struct SeenLayer {
     view: FogTableView,
     layer: FogLayer,
-    /// Height of the eye above the ground, from which the heights of the layer count, m.
+}
+
+struct Fog {
+    /// The layers, of which the first `count` are used.
+    layers: array<SeenLayer, MOST_FOG_LAYERS>,
+    count: u32,
+    /// Height of the eye above the ground, from which the heights of the layers count, m.
     eye_height_m: f32,
 }
 
@@ -20,9 +29,18 @@ fn path_to(seen: Pixel) -> PathOptics {
     if sine < 0.0 {
         length_m = min(length_m, fog.eye_height_m / -sine);
     }
-    let column_m = fog_layer_column_m(fog.layer, ray_segment(fog.eye_height_m, sine, length_m, 0.0));
-    let depth = min(fog.layer.extinction_per_m * column_m, vec3<f32>(OPAQUE));
-    return tabulated_fog(fog.view, diffuse, streams, stream_phase, linear_sampler, seen.direction, depth);
+    let ray = ray_segment(fog.eye_height_m, sine, length_m, 0.0);
+    var path = PathOptics(vec3<f32>(1.0), vec3<f32>(0.0));
+    for (var i = 0u; i < fog.count; i += 1u) {
+        let layer = fog.layers[i].layer;
+        let depth = min(layer.extinction_per_m * fog_layer_column_m(layer, ray), vec3<f32>(OPAQUE));
+        let of_layer = tabulated_fog(
+            fog.layers[i].view, diffuse, streams, stream_phase, linear_sampler, seen.direction, depth,
+        );
+        path.transmittance *= of_layer.transmittance;
+        path.path_radiance += of_layer.path_radiance;
+    }
+    return path;
 }
 
 fn transmittance_to(seen: Pixel) -> vec3<f32> {

@@ -209,8 +209,7 @@ impl SkySolver {
             Some(fog) => {
                 let lit = self.lit_fog(fog, source, &sky)?;
                 sky = sky.over_ground_in_part(ground_share(&lit));
-                let tables = fog.tables(height_m, &lit, &sky)?;
-                let frame = fog.frame(tables, height_m);
+                let frame = fog.frame(height_m, &lit, &sky)?;
                 let to_sun = frame.path(lighting.sun).transmittance;
                 let in_fog = lighting.in_fog(to_sun, |d| frame.in_front_of(sky.rgb_radiance(d), d));
                 (Some(frame), in_fog)

@@ -40,7 +40,7 @@ pub use device_loss::is_device_lost;
 pub use disc::DiscTable;
 pub use environment::EnvironmentMap;
 pub use error::SkyRendererError;
-pub use fog::{Fog, FogFrame};
+pub use fog::{Fog, FogFrame, MOST_FOG_LAYERS};
 pub use frame_tables::{FrameTables, SkySolver, SourceTables};
 pub use lighting::{DirectLight, Lighting};
 pub use lights::MOST_LIGHTS;

@@ -180,8 +180,8 @@ impl SkyRenderer {
     /// Sets or removes a fog in front of everything, from the next update on.
     ///
     /// # Errors
-    /// [`SkyRendererError::Fog`] and [`SkyRendererError::FogProfile`] for an invalid fog, and [`SkyRendererError::LightProfile`] for one
-    /// that lights cannot be in.
+    /// [`SkyRendererError::Fog`], [`SkyRendererError::FogProfile`] and [`SkyRendererError::FogLayers`] for an invalid fog, and
+    /// [`SkyRendererError::LightProfile`] for one that lights cannot be in.
     pub fn set_fog(&mut self, fog: Option<Fog>) -> Result<(), SkyRendererError> {
         fog.as_ref().map_or(Ok(()), Fog::validate)?;
         check_lights(fog.as_ref(), self.has_lights)?;
@@ -344,7 +344,7 @@ impl SkyRenderer {
     }
 }
 
-/// Refuses lights in a fog that is not exponential.
+/// Refuses lights in a fog that is not a single exponential layer.
 fn check_lights(fog: Option<&Fog>, has_lights: bool) -> Result<(), SkyRendererError> {
     match fog.filter(|_| has_lights).map(Fog::around_lights) {
         Some(None) => Err(SkyRendererError::LightProfile),

@@ -4,13 +4,16 @@ use crate::sky_tables::SkyTables;
 use crate::twins::columns::INFINITE_M;
 use crate::twins::exponentials::OPAQUE;
 use crate::twins::fog_table::{
-    FOG_AZIMUTHS, FOG_DISTANCES, FOG_LOGARITHMIC, FOG_ROWS, FogTableView,
+    FOG_AZIMUTHS, FOG_DISTANCES, FOG_LOGARITHMIC, FOG_ROWS, FogTableView, fog_opacity,
+    tabulated_fog,
 };
+use crate::twins::path_optics::PathOptics;
 use crate::twins::sky_tables::{
     PHASE_ANGLES, SkyView, direction_from_azimuth_elevation, one_minus_cos_from_phase_place,
 };
-use crate::twins::texture::Texture;
-use airlight::fog::{FOG_STREAMS, RaySegment, RgbFog, RgbFogParts, RgbFogTable};
+use crate::twins::texture::{LinearSampler, Texture};
+use airlight::fog::{DensityProfile, FOG_STREAMS, RaySegment, RgbFog, RgbFogParts, RgbFogTable};
+use airlight::glam::DVec3;
 use glam::{Vec3, Vec4};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -24,11 +27,11 @@ const LARGEST_PHASE: f32 = 6e4;
 const BESIDE_LEVEL: f64 = 1e-5;
 
 /// Tables of a fog with all orders of scattering for one height of the eye, with the parameters of the shader function that reads
-/// them, `tabulated_fog`. Textures may be stored as half floats.
+/// them, `tabulated_fog`. Textures may be stored as half floats. Those of several density profiles are stacked in the last dimension.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FogTables {
-    /// What the tables are made for.
-    pub view: FogTableView,
+    /// What the tables are made for: one view for each density profile of the fog, in the order of [`RgbFog::profiles`].
+    pub views: Vec<FogTableView>,
     /// Light that is scattered several times, per unit of opacity.
     pub diffuse: Texture,
     /// Logarithm of sunlight scattered once per unit of opacity, by distance, row and stream.
@@ -43,7 +46,7 @@ pub struct FogTables {
 pub enum FogTablesError {
     /// The fog is of another kind.
     #[error(
-        "expected fog of one layer with multiple scattering over flat ground, got another; try the functions of the part `fog`"
+        "expected fog with multiple scattering and an upper end over flat ground, got another; try the functions of the part `fog`"
     )]
     Fog,
 }
@@ -55,10 +58,10 @@ const DISTANCES: usize = FOG_DISTANCES as usize;
 const ANGLES: usize = PHASE_ANGLES as usize;
 
 impl FogTables {
-    /// The tables of a fog for an eye at a height, m, not below the ground. Takes about a tenth of a second.
+    /// The tables of a fog for an eye at a height, m, not below the ground. Takes about a tenth of a second for each density profile.
     ///
     /// # Errors
-    /// [`FogTablesError`] for fog without multiple scattering, of several layers, or over round ground.
+    /// [`FogTablesError`] for fog without layers, multiple scattering or an upper end, or over round ground.
     pub fn new(fog: &RgbFog, eye_height_m: f64) -> Result<Self, FogTablesError> {
         Self::filled(fog, eye_height_m, None)
     }
@@ -74,7 +77,8 @@ impl FogTables {
     /// ```
     ///
     /// where `<f>` is the mean of `f` over the light that the fog removes on the way: per unit of opacity both vary slowly with distance and
-    /// direction, as the tables do. Takes twice as long as [`FogTables::new`].
+    /// direction, as the tables do. For one of several layers the means are over the light that it removes, and `1 - T_f` is the light that
+    /// it removes of all. Takes twice as long as [`FogTables::new`].
     ///
     /// # Errors
     /// As [`FogTables::new`].
@@ -86,64 +90,174 @@ impl FogTables {
         Self::filled(fog, eye_height_m, Some(air))
     }
 
+    /// Fog between the eye and a point along a unit vector, by the optical depth of each density profile on the way: what the shader function
+    /// finds, with textures of single precision.
+    pub fn path(&self, direction: Vec3, depths: impl IntoIterator<Item = Vec3>) -> PathOptics {
+        let clear = PathOptics {
+            transmittance: Vec3::ONE,
+            path_radiance: Vec3::ZERO,
+        };
+        let layers = self.views.iter().zip(depths);
+        layers.fold(clear, |sum, (view, depth)| {
+            let layer = tabulated_fog(
+                *view,
+                &self.diffuse,
+                &self.streams,
+                &self.stream_phase,
+                LinearSampler,
+                direction,
+                depth,
+            );
+            PathOptics {
+                transmittance: sum.transmittance * layer.transmittance,
+                path_radiance: sum.path_radiance + layer.path_radiance,
+            }
+        })
+    }
+
     fn filled(
         fog: &RgbFog,
         eye_height_m: f64,
         air: Option<&SkyTables>,
     ) -> Result<Self, FogTablesError> {
-        let table = fog.seen_from(eye_height_m);
-        let sun = fog.lighting().sun;
-        let ground_m = (eye_height_m - fog.ground().height_m).max(0.0);
-        let depth = |sine: f64, length_m: f64| {
-            let depth = fog.optical_depth(&segment(eye_height_m, sine, length_m));
-            Vec3::from(depth).min(Vec3::splat(OPAQUE))
-        };
-        let (below, above) = (depth(-1.0, ground_m), depth(1.0, f64::INFINITY));
-        let per_sine = |depth: Vec3| 1.0 / (0.1 * depth.element_sum() / 3.0).clamp(1e-6, 0.05);
-        let [below_per_sine, above_per_sine] = [below, above].map(per_sine);
-        let mut rows = Vec::with_capacity(2 * ROWS);
-        for (sign, per_sine) in [(-1.0, below_per_sine), (1.0, above_per_sine)] {
-            for row in 0..ROWS {
-                let place = (row as f64 / (ROWS - 1) as f64).max(BESIDE_LEVEL);
-                let sine = sign * elevation_at(f64::from(per_sine), place).sin();
-                rows.push(RowOfRays::new(fog, eye_height_m, ground_m, sine));
-            }
+        let seen = SeenFog::new(fog, eye_height_m);
+        let layers: Option<Vec<LayerTables>> = (0..seen.layers.len())
+            .map(|layer| LayerTables::new(&seen, layer, air))
+            .collect();
+        let layers = layers.filter(|layers| !layers.is_empty());
+        let layers = layers.ok_or(FogTablesError::Fog)?;
+        let (stream_phase, scale) = stream_phase(&seen.table);
+        let mut views: Vec<FogTableView> = layers.iter().map(|layer| layer.view).collect();
+        for view in &mut views {
+            view.sunlit_scale *= scale;
         }
-        let parts = rows
-            .iter()
-            .map(|row| table.parts(row.sine, &row.distances_m));
-        let nodes: Option<Vec<Vec<RgbFogParts>>> = parts.collect();
-        let nodes = nodes.ok_or(FogTablesError::Fog)?;
-        let mut view = FogTableView {
-            sun: sun.map_or(Vec3::Y, |sun| sun.direction.as_vec3()),
-            below_per_sine,
-            depth_below: below,
-            above_per_sine,
-            diffuse_scale: 1.0,
-            depth_above: above,
-            sunlit_scale: 1.0,
+        let stacked = |[width, height, depth]: [usize; 3], texels: fn(&LayerTables) -> &[Vec4]| {
+            let all: Vec<&[Vec4]> = layers.iter().map(texels).collect();
+            Texture::new([width, height, layers.len() * depth], all.concat())
         };
-        let in_front = |air| {
-            rows.iter()
-                .map(|row| AirBefore::new(row, air, view.sun))
-                .collect()
-        };
-        let before: Option<Vec<AirBefore>> = air.map(in_front);
-        let diffuse = diffuse(&rows, &nodes, before.as_deref(), &mut view.diffuse_scale);
-        let streams = streams(&nodes, before.as_deref(), &mut view.sunlit_scale);
-        let stream_phase = stream_phase(&table, &mut view.sunlit_scale);
+        let slices = seen.table.phase_count() * FOG_STREAMS;
         Ok(Self {
-            view,
-            diffuse,
-            streams,
+            views,
+            diffuse: stacked([AZIMUTHS, 2 * ROWS, DISTANCES], |layer| &layer.diffuse),
+            streams: stacked([DISTANCES, 2 * ROWS, slices], |layer| &layer.streams),
             stream_phase,
         })
     }
 }
 
-/// A ray over flat ground.
-fn segment(height_m: f64, sine: f64, length_m: f64) -> RaySegment {
-    RaySegment::new(height_m, sine, length_m, f64::INFINITY)
+/// A fog seen from a height.
+struct SeenFog {
+    table: RgbFogTable,
+    sun: Option<DVec3>,
+    eye_height_m: f64,
+    /// Height of the eye above the ground, m.
+    above_ground_m: f64,
+    layers: Vec<Layer>,
+}
+
+/// Layers of one density profile.
+struct Layer {
+    density: DensityProfile,
+    extinction_per_m: Vec3,
+}
+
+impl SeenFog {
+    fn new(fog: &RgbFog, eye_height_m: f64) -> Self {
+        let layer = |(density, extinction): (&DensityProfile, [f32; 3])| Layer {
+            density: density.clone(),
+            extinction_per_m: Vec3::from(extinction),
+        };
+        Self {
+            table: fog.seen_from(eye_height_m),
+            sun: fog.lighting().sun.map(|sun| sun.direction),
+            eye_height_m,
+            above_ground_m: (eye_height_m - fog.ground().height_m).max(0.0),
+            layers: fog.profiles().map(layer).collect(),
+        }
+    }
+
+    /// Optical depth of a layer along a ray from the eye.
+    fn depth(&self, layer: &Layer, sine: f64, length_m: f64) -> Vec3 {
+        let ray = RaySegment::flat(self.eye_height_m, sine, length_m);
+        let column_m = layer.density.column_along_m(&ray).min(f64::from(OPAQUE));
+        (layer.extinction_per_m * column_m as f32).min(Vec3::splat(OPAQUE))
+    }
+
+    /// Transmittance of all layers but one along a ray from the eye.
+    fn transmittance_of_others(&self, but: usize, sine: f64, length_m: f64) -> Vec3 {
+        let others = self.layers.iter().enumerate().filter(|(k, _)| *k != but);
+        let depth: Vec3 = others
+            .map(|(_, layer)| self.depth(layer, sine, length_m))
+            .sum();
+        (-depth).exp()
+    }
+}
+
+/// The tables of a layer.
+struct LayerTables {
+    view: FogTableView,
+    diffuse: Vec<Vec4>,
+    streams: Vec<Vec4>,
+}
+
+impl LayerTables {
+    fn new(seen: &SeenFog, layer: usize, air: Option<&SkyTables>) -> Option<Self> {
+        let depths = |layer| {
+            let sides = [(-1.0, seen.above_ground_m), (1.0, f64::INFINITY)];
+            sides.map(|(sine, length_m)| seen.depth(layer, sine, length_m))
+        };
+        let [depth_below, depth_above] = depths(&seen.layers[layer]);
+        let [below_per_sine, above_per_sine] = [0, 1].map(|side| {
+            // The thinnest layer is opaque along rays that are the closest to level ones.
+            let each = seen
+                .layers
+                .iter()
+                .map(|layer| depths(layer)[side].element_sum() / 3.0);
+            let least = each
+                .filter(|depth| *depth > 0.0)
+                .fold(f32::INFINITY, f32::min);
+            1.0 / (0.1 * least).clamp(1e-6, 0.05)
+        });
+        let mut rows = Vec::with_capacity(2 * ROWS);
+        for (sign, per_sine) in [(-1.0, below_per_sine), (1.0, above_per_sine)] {
+            for row in 0..ROWS {
+                let place = (row as f64 / (ROWS - 1) as f64).max(BESIDE_LEVEL);
+                let sine = sign * elevation_at(f64::from(per_sine), place).sin();
+                rows.push(RowOfRays::new(seen, layer, sine));
+            }
+        }
+        let parts = rows
+            .iter()
+            .map(|row| seen.table.parts(layer, row.sine, &row.distances_m));
+        let nodes: Option<Vec<Vec<RgbFogParts>>> = parts.collect();
+        let nodes = nodes?;
+        let sun = seen.sun.map_or(Vec3::Y, |sun| sun.as_vec3());
+        let in_front = |air| {
+            rows.iter()
+                .map(|row| AirBefore::new(row, air, sun))
+                .collect()
+        };
+        let before: Option<Vec<AirBefore>> = air.map(in_front);
+        let (diffuse, diffuse_scale) = diffuse(&rows, &nodes, before.as_deref());
+        let (streams, sunlit_scale) = streams(&nodes, before.as_deref());
+        let view = FogTableView {
+            sun,
+            below_per_sine,
+            depth_below,
+            above_per_sine,
+            depth_above,
+            diffuse_scale,
+            sunlit_scale,
+            layer: layer as f32,
+            layer_count: seen.layers.len() as f32,
+            phase_count: seen.table.phase_count() as f32,
+        };
+        Some(Self {
+            view,
+            diffuse,
+            streams,
+        })
+    }
 }
 
 /// Absolute elevation at a place of a row, rad: the inverse of `fog_row_place`, by bisection.
@@ -164,26 +278,26 @@ fn elevation_at(per_sine: f64, place: f64) -> f64 {
     high
 }
 
-/// Rays of one elevation, and the distances of the tables along them.
+/// Rays of one elevation, and the distances of the tables of a layer along them.
 struct RowOfRays {
     sine: f64,
     distances_m: Vec<f64>,
-    /// Opacity of the fog up to each distance, the mean of the channels.
-    opacities: Vec<f64>,
+    /// Opacity of the layer alone up to each distance.
+    opacities: Vec<Vec3>,
+    /// Transmittance of the other layers up to each distance.
+    before: Vec<Vec3>,
 }
 
 impl RowOfRays {
-    fn new(fog: &RgbFog, eye_height_m: f64, ground_m: f64, sine: f64) -> Self {
-        let opacity = |length_m: f64| {
-            let depth = fog.optical_depth(&segment(eye_height_m, sine, length_m));
-            let sum: f64 = depth.iter().map(|&d| -f64::from(-d).exp_m1()).sum();
-            sum / 3.0
-        };
+    fn new(seen: &SeenFog, layer: usize, sine: f64) -> Self {
+        let of = &seen.layers[layer];
+        let opacity = |length_m: f64| fog_opacity(seen.depth(of, sine, length_m));
+        let mean = |length_m: f64| f64::from(opacity(length_m).element_sum()) / 3.0;
         let end_m = match sine < 0.0 {
-            true => ground_m / -sine,
+            true => seen.above_ground_m / -sine,
             false => f64::INFINITY,
         };
-        let whole = opacity(end_m);
+        let whole = mean(end_m);
         let mut distances_m = Vec::with_capacity(DISTANCES);
         let mut from_m = 0.0;
         for node in 0..DISTANCES {
@@ -191,15 +305,16 @@ impl RowOfRays {
             let target = whole * (1.0 - left.powi(4)).max(NEAREST);
             from_m = match node == DISTANCES - 1 {
                 true => end_m,
-                false => distance_of(&opacity, target, from_m, end_m),
+                false => distance_of(&mean, target, from_m, end_m),
             };
             distances_m.push(from_m);
         }
-        let opacities = distances_m.iter().map(|&m| opacity(m)).collect();
+        let before = |&m: &f64| seen.transmittance_of_others(layer, sine, m);
         Self {
             sine,
+            opacities: distances_m.iter().map(|&m| opacity(m)).collect(),
+            before: distances_m.iter().map(before).collect(),
             distances_m,
-            opacities,
         }
     }
 
@@ -207,27 +322,37 @@ impl RowOfRays {
         (1.0 - self.sine * self.sine).max(0.0).sqrt()
     }
 
-    /// Means over the light that the fog removes up to each distance, of values that start from one at the eye.
-    fn means(&self, at_eye: Vec3, value: impl Fn(f64) -> Vec3) -> Vec<Vec3> {
-        let (mut sum, mut last) = (Vec3::ZERO, (0.0, at_eye));
-        let nodes = self.distances_m.iter().zip(&self.opacities);
-        let mean = |(&distance_m, &opacity): (&f64, &f64)| {
-            let here = value(distance_m);
-            sum += 0.5 * (last.1 + here) * (opacity - last.0) as f32;
-            last = (opacity, here);
-            match opacity > 0.0 {
-                true => sum / opacity as f32,
-                false => at_eye,
-            }
+    /// Light that the layer removes up to each distance, and its product with values, per unit of opacity.
+    fn removed(&self, value: impl Fn(f64) -> Vec3) -> Vec<[Vec3; 2]> {
+        let (mut sum, mut weighted) = (Vec3::ZERO, Vec3::ZERO);
+        let at = |k: usize| {
+            (
+                self.opacities[k],
+                self.before[k],
+                value(self.distances_m[k]),
+            )
         };
-        nodes.map(mean).collect()
+        // Light that is removed before the first distance is removed close to it.
+        let mut last = (Vec3::ZERO, self.before[0], value(self.distances_m[0]));
+        let removed = |k: usize| {
+            let here = at(k);
+            let step = here.0 - last.0;
+            sum += 0.5 * step * (last.1 + here.1);
+            weighted += 0.5 * step * (last.1 * last.2 + here.1 * here.2);
+            last = here;
+            let per_opacity =
+                |light: Vec3| Vec3::select(here.0.cmpgt(Vec3::ZERO), light / here.0, Vec3::ZERO);
+            [sum, weighted].map(per_opacity)
+        };
+        (0..self.distances_m.len()).map(removed).collect()
     }
 }
 
-/// Means of the air in front of a row over the light that the fog removes up to each distance.
+/// Air in front of a row.
 struct AirBefore {
+    /// Means of the transmittance over the light that the layer removes up to each distance.
     transmittance: Vec<Vec3>,
-    /// By azimuth.
+    /// By azimuth, products of the path radiance and the light that the layer removes, per unit of its opacity.
     path_radiance: Vec<Vec<Vec3>>,
 }
 
@@ -240,9 +365,16 @@ impl AirBefore {
             let direction = direction_from_azimuth_elevation(view, turn, elevation);
             air.rgb_path(direction, distance_m.min(f64::from(INFINITE_M)) as f32)
         };
-        let of_azimuth = |azimuth| row.means(Vec3::ZERO, |m| optics(azimuth, m).path_radiance);
+        let mean = |[removed, dimmed]: [Vec3; 2]| {
+            Vec3::select(removed.cmpgt(Vec3::ZERO), dimmed / removed, Vec3::ONE)
+        };
+        let through = row.removed(|m| optics(0, m).transmittance);
+        let of_azimuth = |azimuth| {
+            let light = row.removed(|m| optics(azimuth, m).path_radiance);
+            light.into_iter().map(|[_, light]| light).collect()
+        };
         Self {
-            transmittance: row.means(Vec3::ONE, |m| optics(0, m).transmittance),
+            transmittance: through.into_iter().map(mean).collect(),
             path_radiance: (0..AZIMUTHS).map(of_azimuth).collect(),
         }
     }
@@ -266,13 +398,12 @@ fn distance_of(opacity: &impl Fn(f64) -> f64, target: f64, from_m: f64, end_m: f
     high
 }
 
-/// Diffuse light by azimuth, row and distance, relative to its largest value, which is the scale.
+/// Diffuse light by azimuth, row and distance, relative to its largest value, and that value.
 fn diffuse(
     rows: &[RowOfRays],
     nodes: &[Vec<RgbFogParts>],
     before: Option<&[AirBefore]>,
-    scale: &mut f32,
-) -> Texture {
+) -> (Vec<Vec4>, f32) {
     let mut texels = Vec::with_capacity(AZIMUTHS * 2 * ROWS * DISTANCES);
     for distance in 0..DISTANCES {
         for (row, nodes) in nodes.iter().enumerate() {
@@ -287,11 +418,11 @@ fn diffuse(
             }
         }
     }
-    *scale = largest(&texels);
+    let scale = largest(&texels);
     for texel in &mut texels {
-        *texel /= *scale;
+        *texel /= scale;
     }
-    Texture::new([AZIMUTHS, 2 * ROWS, DISTANCES], texels)
+    (texels, scale)
 }
 
 /// Largest value of texels, or 1 if all are 0.
@@ -302,46 +433,50 @@ fn largest(texels: &[Vec4]) -> f32 {
     if largest > 0.0 { largest } else { 1.0 }
 }
 
-/// Logarithms of the streams by distance, row and stream, relative to the largest value, by which the scale is multiplied.
-fn streams(nodes: &[Vec<RgbFogParts>], before: Option<&[AirBefore]>, scale: &mut f32) -> Texture {
-    let mut texels = Vec::with_capacity(DISTANCES * 2 * ROWS * FOG_STREAMS);
-    for stream in 0..FOG_STREAMS {
-        for (row, nodes) in nodes.iter().enumerate() {
-            for (distance, parts) in nodes.iter().enumerate() {
-                let through = before.map_or(Vec3::ONE, |air| air[row].transmittance[distance]);
-                let light = Vec3::from(parts.streams[stream]) * through;
-                texels.push(light.extend(0.0));
+/// Logarithms of the streams by distance, row, phase function and stream, relative to the largest value, and that value.
+fn streams(nodes: &[Vec<RgbFogParts>], before: Option<&[AirBefore]>) -> (Vec<Vec4>, f32) {
+    let phases = nodes[0][0].streams.len();
+    let mut texels = Vec::with_capacity(DISTANCES * 2 * ROWS * phases * FOG_STREAMS);
+    for phase in 0..phases {
+        for stream in 0..FOG_STREAMS {
+            for (row, nodes) in nodes.iter().enumerate() {
+                for (distance, parts) in nodes.iter().enumerate() {
+                    let through = before.map_or(Vec3::ONE, |air| air[row].transmittance[distance]);
+                    let light = Vec3::from(parts.streams[phase][stream]) * through;
+                    texels.push(light.extend(0.0));
+                }
             }
         }
     }
-    let most = largest(&texels);
-    *scale *= most;
-    let logarithm = |x: f32| (x / most).ln().max(DARKEST);
-    let texels = texels
-        .iter()
-        .map(|t| Vec4::from(t.to_array().map(logarithm)));
-    Texture::new([DISTANCES, 2 * ROWS, FOG_STREAMS], texels.collect())
+    let scale = largest(&texels);
+    let logarithm = |x: f32| (x / scale).ln().max(DARKEST);
+    for texel in &mut texels {
+        *texel = Vec4::from(texel.to_array().map(logarithm));
+    }
+    (texels, scale)
 }
 
-/// Light scattered towards the eye by angle and stream, relative to a scale by which `scale` is multiplied.
-fn stream_phase(table: &RgbFogTable, scale: &mut f32) -> Texture {
-    let angles: Vec<[[f32; 3]; FOG_STREAMS]> = (0..ANGLES)
-        .map(|angle| {
+/// Phase functions times sunlight by angle, phase function and stream, relative to a scale, and that scale.
+fn stream_phase(table: &RgbFogTable) -> (Texture, f32) {
+    let phases = table.phase_count();
+    let mut texels = vec![Vec4::ZERO; ANGLES * phases * FOG_STREAMS];
+    for phase in 0..phases {
+        for angle in 0..ANGLES {
             let place = angle as f32 / (ANGLES - 1) as f32;
             let one_minus_cos = f64::from(one_minus_cos_from_phase_place(place));
-            table.sun_streams(1.0 - one_minus_cos)
-        })
-        .collect();
-    let stream = |k: usize| {
-        angles
-            .iter()
-            .map(move |light| Vec3::from(light[k]).extend(0.0))
-    };
-    let mut texels: Vec<Vec4> = (0..FOG_STREAMS).flat_map(stream).collect();
-    let unit = largest(&texels) / LARGEST_PHASE;
-    *scale *= unit;
-    for texel in &mut texels {
-        *texel /= unit;
+            let streams = table.sun_streams(phase, 1.0 - one_minus_cos);
+            for (stream, light) in streams.into_iter().enumerate() {
+                let slice = phase * FOG_STREAMS + stream;
+                texels[slice * ANGLES + angle] = Vec3::from(light).extend(0.0);
+            }
+        }
     }
-    Texture::new([ANGLES, FOG_STREAMS, 1], texels)
+    let scale = largest(&texels) / LARGEST_PHASE;
+    for texel in &mut texels {
+        *texel /= scale;
+    }
+    (
+        Texture::new([ANGLES, phases * FOG_STREAMS, 1], texels),
+        scale,
+    )
 }

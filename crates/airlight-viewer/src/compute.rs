@@ -16,7 +16,7 @@ use airlight::scene::{
 use airlight::sky::SunCoverage;
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use airlight::transfer::RgbPathOptics;
-use airlight_gpu::{Fog, FrameTables, SkyRendererError, SkySolver};
+use airlight_gpu::{Fog, FrameTables, MOST_FOG_LAYERS, SkyRendererError, SkySolver};
 use airlight_image::{ImageError, Size};
 use airlight_render::RenderError;
 #[cfg(not(target_arch = "wasm32"))]
@@ -167,7 +167,7 @@ pub struct Facts {
     pub sun_lx: f64,
     /// Illuminance of a horizontal surface by the sky, lx.
     pub sky_lx: f64,
-    /// Whether lights shine in the fog: in one layer that thins exponentially with height.
+    /// Whether lights shine in the fog: in a single layer that thins exponentially with height.
     pub holds_lights: bool,
     /// Distance at which the contrast of a black object at the eye's height falls to the scene's threshold, m: in air and fog of that
     /// height, at 550 nm. Infinite in space.
@@ -556,24 +556,28 @@ fn unit_vectors(directions: &[[f32; 3]]) -> Vec<DVec3> {
         .collect()
 }
 
-/// The first layer of a scene's fog.
+/// A scene's fog, of as many layers as the device draws.
 fn fog(scene: &ResolvedScene) -> Result<Option<Fog>, Refusal> {
-    let Some(layer) = scene.fog.as_ref().and_then(|fog| fog.layers.first()) else {
+    let Some(fog) = &scene.fog else {
         return Ok(None);
     };
     let planet = &scene.atmosphere.planet;
     let ground_height_m = planet.ground_altitude_m;
     let grid = WavelengthGrid::standard();
-    let part = layer.constituent(grid.wavelengths_nm())?;
-    let Some(mut part) = part.raised(ground_height_m) else {
-        return Ok(None);
-    };
-    // The device's layers have two edges; below the ground nothing is seen.
-    if let DensityProfile::Layer { bottom_m, .. } = &mut part.density {
-        *bottom_m = bottom_m.max(ground_height_m);
+    let mut layers = Vec::new();
+    for layer in fog.layers.iter().take(MOST_FOG_LAYERS) {
+        let part = layer.constituent(grid.wavelengths_nm())?;
+        let Some(mut part) = part.raised(ground_height_m) else {
+            continue;
+        };
+        // The device's layers have two edges; below the ground nothing is seen.
+        if let DensityProfile::Layer { bottom_m, .. } = &mut part.density {
+            *bottom_m = bottom_m.max(ground_height_m);
+        }
+        layers.push(RgbLayer::from_constituent(&part, SPACE)?);
     }
-    Ok(Some(Fog {
-        layer: RgbLayer::from_constituent(&part, SPACE)?,
+    Ok((!layers.is_empty()).then(|| Fog {
+        layers,
         ground_height_m,
         ground_albedo: [planet.ground_albedo.at(NM) as f32; 3],
     }))

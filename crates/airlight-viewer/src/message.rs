@@ -123,11 +123,13 @@ structs! {
         dense_share, dense_azimuth, dense_width }
     SkyScales { smooth_light, haze }
     RgbWeights { red, green, blue }
-    FogFrame { tables, layer, eye_height_m, around_lights }
+    FogFrame { tables, layers, eye_height_m, around_lights }
     ExponentialFog { medium, mean_cosine, reference_height_m, scale_height_m }
     FogMedium { extinction_per_m, scattering_per_m }
-    FogTables { view, diffuse, streams, stream_phase }
-    FogTableView { sun, below_per_sine, depth_below, above_per_sine, depth_above, diffuse_scale, sunlit_scale }
+    FogTables { views, diffuse, streams, stream_phase }
+    FogTableView {
+        sun, below_per_sine, depth_below, above_per_sine, depth_above, diffuse_scale, sunlit_scale, layer, layer_count, phase_count
+    }
     FogLayer { extinction_per_m, profile, scattering_per_m, height_m, phase, scale_m }
     Lighting { sun, sun_illuminance_lx, second, sky_coefficients_lx }
     DirectLight { direction, illuminance_lx }

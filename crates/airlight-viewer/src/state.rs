@@ -4,6 +4,7 @@ use airlight::fog::FogScattering;
 use airlight::scene::{
     CameraSpec, NightSpec, ObjectsSpec, Projection, Scene, SceneDocument, SceneError, SunSpec,
 };
+use airlight_gpu::MOST_FOG_LAYERS;
 use airlight_render::overlay::{OverlayScene, OverlaySpec};
 #[cfg(not(target_arch = "wasm32"))]
 use airlight_render::{RenderError, scene_file};
@@ -227,8 +228,8 @@ impl State {
         let orders = fog.and_then(|fog| fog.scattering);
         [
             (
-                fog.is_some_and(|fog| !fog.layers.is_empty()),
-                "further layers of fog",
+                fog.is_some_and(|fog| fog.layers.len() >= MOST_FOG_LAYERS),
+                "more than four layers of fog",
             ),
             (
                 orders.is_some_and(|orders| orders != FogScattering::Multiple),

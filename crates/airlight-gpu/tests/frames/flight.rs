@@ -153,11 +153,11 @@ fn an_eye_leaves_a_fog_without_a_seam() {
     let solver = solver(Preset::Clear);
     let sun = axes::direction(140.0, 30.0);
     let mut fog = valley_fog();
-    fog.layer.density = DensityProfile::Layer {
+    fog.layers[0].density = DensityProfile::Layer {
         bottom_m: 0.0,
         top_m: 50.0,
     };
-    fog.layer.extinction_per_m = [0.005; 3];
+    fog.layers[0].extinction_per_m = [0.005; 3];
     let mut before: Option<Vec<f64>> = None;
     for k in -6..=6 {
         let height_m = 50.0 + 0.5 * f64::from(k);

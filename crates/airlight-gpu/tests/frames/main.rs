@@ -20,7 +20,9 @@ use airlight::sky::{LightSource, Sky, SkySettings, SunCoverage, TableChannels, V
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use airlight::transfer::medium_evaluations;
 use airlight_gpu::headless::{FORMAT, Frame, Geometry, Headless};
-use airlight_gpu::{Fog, SkyPasses, SkyRenderer, SkyRendererError, SkyRendererSettings, SkySolver};
+use airlight_gpu::{
+    Fog, MOST_FOG_LAYERS, SkyPasses, SkyRenderer, SkyRendererError, SkyRendererSettings, SkySolver,
+};
 use airlight_shaders::{ColourFit, SkyTables};
 use cube::sample_cube;
 use glam::{DVec3, Vec3};
@@ -255,12 +257,12 @@ fn lighting_is_that_of_the_solver() {
 /// Fog with a visibility of 200 m that thins by e in 30 m.
 fn valley_fog() -> Fog {
     Fog {
-        layer: RgbLayer {
+        layers: vec![RgbLayer {
             density: DensityProfile::exponential(30.0),
             extinction_per_m: [0.0196; 3],
             single_scattering_albedo: [0.999; 3],
             phase: PhaseFunction::henyey_greenstein(0.8).unwrap(),
-        },
+        }],
         ground_height_m: 0.0,
         ground_albedo: [0.2; 3],
     }
@@ -288,12 +290,12 @@ fn fog_has_any_profile_of_its_documentation() {
     ];
     for density in profiles {
         let mut fog = valley_fog();
-        fog.layer.density = density.clone();
+        fog.layers[0].density = density.clone();
         let tables = solver.tables(2.0, sun, Some(&fog)).unwrap();
         assert!(tables.first.fog.is_some(), "{density:?}");
     }
     let mut fog = valley_fog();
-    fog.layer.density = DensityProfile::Uniform;
+    fog.layers[0].density = DensityProfile::Uniform;
     let error = solver.tables(2.0, sun, Some(&fog)).unwrap_err();
     assert_eq!(error, SkyRendererError::FogProfile);
 }
@@ -310,7 +312,7 @@ fn lighting_in_fog_is_that_of_the_library() {
         let clear = *renderer.lighting().unwrap();
         let in_fog = |renderer: &mut SkyRenderer, extinction_per_m: f32| {
             let mut fog = valley_fog();
-            fog.layer.extinction_per_m = [extinction_per_m; 3];
+            fog.layers[0].extinction_per_m = [extinction_per_m; 3];
             renderer.set_fog(Some(fog.clone())).unwrap();
             renderer.update(0.0, sun).unwrap();
             let light = FogLighting {
@@ -321,7 +323,7 @@ fn lighting_in_fog_is_that_of_the_library() {
                 ambient: (clear.sky_illuminance_lx(Vec3::Y) / std::f32::consts::PI).to_array(),
                 ground_albedo: fog.ground_albedo,
             };
-            let fog = RgbFog::new(&[fog.layer], Ground::FLAT, &light, FogScattering::Multiple);
+            let fog = RgbFog::new(&fog.layers, Ground::FLAT, &light, FogScattering::Multiple);
             let fog = fog.unwrap();
             let on_ground = Vec3::from_array(fog.ground_irradiance().unwrap());
             let to_sun = fog.path(0.0, sun, f64::INFINITY).transmittance;
@@ -385,7 +387,7 @@ fn lights_in_fog_are_those_of_the_library() {
     let lit = draw(&mut renderer);
     assert_eq!(renderer.work().tables, tables);
     let all = lights(DVec3::ZERO).to_vec();
-    let right = RgbLightSet::new(all, &[fog.layer], Ground::FLAT, LightSettings::default());
+    let right = RgbLightSet::new(all, &fog.layers, Ground::FLAT, LightSettings::default());
     let right = right.unwrap();
     let mut worst = (0.0, Vec3::ZERO);
     for k in 0..(SIDE * SIDE) as usize {
@@ -553,7 +555,7 @@ fn wrong_inputs_are_errors() {
     ));
     let mut fog = valley_fog();
     for density in [DensityProfile::StandardAir1976, DensityProfile::Uniform] {
-        fog.layer.density = density;
+        fog.layers[0].density = density;
         assert!(matches!(
             renderer.set_fog(Some(fog.clone())),
             Err(SkyRendererError::FogProfile)
@@ -576,7 +578,7 @@ fn wrong_inputs_are_errors() {
         Err(SkyRendererError::Fog(_))
     ));
     renderer.set_lights(&[light]).unwrap();
-    fog.layer.density = DensityProfile::Layer {
+    fog.layers[0].density = DensityProfile::Layer {
         bottom_m: 0.0,
         top_m: 50.0,
     };
@@ -584,7 +586,44 @@ fn wrong_inputs_are_errors() {
         renderer.set_fog(Some(fog.clone())),
         Err(SkyRendererError::LightProfile)
     ));
-    fog.layer.density = DensityProfile::exponential(-30.0);
+    // Lights in two layers, of which the second has the profile of the first or another one.
+    fog = valley_fog();
+    for height_m in [30.0, 50.0] {
+        fog.layers.truncate(1);
+        fog.layers.push(RgbLayer {
+            density: DensityProfile::exponential(height_m),
+            ..fog.layers[0].clone()
+        });
+        assert_eq!(
+            renderer.set_fog(Some(fog.clone())),
+            Err(SkyRendererError::LightProfile)
+        );
+    }
+    renderer.set_lights(&[]).unwrap();
+    let layer = |top_m| RgbLayer {
+        density: DensityProfile::Layer {
+            bottom_m: 0.0,
+            top_m,
+        },
+        ..fog.layers[0].clone()
+    };
+    for (tops_m, count) in [
+        (&[][..], 0),
+        (&[10.0, 20.0, 30.0, 40.0, 50.0], 5),
+        (&[10.0, 20.0, 30.0, 40.0, 40.0], 4),
+    ] {
+        let fog = Fog {
+            layers: tops_m.iter().copied().map(layer).collect(),
+            ..fog.clone()
+        };
+        let most = MOST_FOG_LAYERS;
+        let right = match count {
+            1..=4 => Ok(()),
+            count => Err(SkyRendererError::FogLayers { count, most }),
+        };
+        assert_eq!(renderer.set_fog(Some(fog)), right);
+    }
+    fog.layers[1].density = DensityProfile::exponential(-30.0);
     assert!(matches!(
         renderer.set_fog(Some(fog)),
         Err(SkyRendererError::Fog(_))

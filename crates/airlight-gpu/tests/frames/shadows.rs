@@ -4,7 +4,9 @@ use super::{draw, reference, rgb_of};
 use airlight::atmosphere::{Constituent, DensityProfile, Preset};
 use airlight::axes;
 use airlight::fog::droplets::Droplets;
-use airlight::fog::{DirectionalLight, FogLighting, FogScattering, Ground, RgbFog, RgbLayer};
+use airlight::fog::{
+    DirectionalLight, FogLighting, FogScattering, Ground, RaySegment, RgbFog, RgbLayer,
+};
 use airlight::scene::RgbFoggySky;
 use airlight::sky::{Scattering, Sky, SkySettings, SplitView, View};
 use airlight::spectrum::RgbSpace;
@@ -153,23 +155,28 @@ struct Truth {
     single: SplitView,
     foggy: RgbFoggySky,
     fog: RgbFog,
-    layer: RgbLayer,
+    layers: Vec<RgbLayer>,
 }
 
 impl Truth {
-    fn new() -> Self {
+    /// The light in fog of layers with an extinction at density 1, 1/m.
+    fn new(layers: &[(DensityProfile, f64)]) -> Self {
         let view = reference(AIR, SUN_DEG, EYE_M.y, sun());
         let settings = SkySettings {
             scattering: Scattering::Single,
             ..super::settings(SUN_DEG, EYE_M.y)
         };
         let single = Sky::prepare(&AIR.atmosphere(), view.sky().grid(), &settings).unwrap();
-        let density = DensityProfile::exponential(150.0);
-        let layer = Constituent::fog(0.002, Droplets::default().into(), density, &[]).unwrap();
-        let layers = [layer];
+        let layer = |(density, extinction_per_m): &(DensityProfile, f64)| {
+            let droplets = Droplets::default().into();
+            Constituent::fog(*extinction_per_m, droplets, density.clone(), &[]).unwrap()
+        };
+        let layers: Vec<Constituent> = layers.iter().map(layer).collect();
         let (all, space) = (FogScattering::Multiple, RgbSpace::Srgb);
         let foggy = RgbFoggySky::new(&view, &layers, all, space).unwrap();
-        let layer = RgbLayer::from_constituent(&layers[0], space).unwrap();
+        let layers = layers.iter();
+        let layers = layers.map(|layer| RgbLayer::from_constituent(layer, space).unwrap());
+        let layers: Vec<RgbLayer> = layers.collect();
         let lighting = FogLighting {
             sun: Some(DirectionalLight {
                 direction: sun(),
@@ -179,13 +186,12 @@ impl Truth {
             ambient: [0.0; 3],
             ground_albedo: [0.1; 3],
         };
-        let layers = std::slice::from_ref(&layer);
         Self {
             split: view.split(),
             single: single.view(EYE_M.y, sun()).split(),
-            fog: RgbFog::new(layers, Ground::FLAT, &lighting, all).unwrap(),
+            fog: RgbFog::new(&layers, Ground::FLAT, &lighting, all).unwrap(),
             foggy,
-            layer,
+            layers,
             view,
         }
     }
@@ -210,17 +216,20 @@ impl Truth {
     /// Light that fog scatters once up to distances along a ray, each step behind the air before it.
     fn once_in_fog(&self, direction: DVec3, stops_m: &[f64]) -> Vec<[f64; 3]> {
         let table = self.fog.seen_from(EYE_M.y);
-        let streams = table.sun_streams(direction.dot(sun()));
-        let parts = table.parts(direction.y, stops_m).unwrap();
-        let alone = parts.iter().zip(stops_m).map(|(parts, &m)| {
-            let transmittance = self.fog.path(EYE_M.y, direction, m).transmittance;
-            std::array::from_fn(|c| {
-                let each = parts.streams.iter().zip(&streams);
-                let source: f32 = each.map(|(light, phase)| light[c] * phase[c]).sum();
-                f64::from(source * (1.0 - transmittance[c]))
-            })
-        });
-        let alone: Vec<[f64; 3]> = alone.collect();
+        let streams = table.sun_streams(0, direction.dot(sun()));
+        let mut alone = vec![[0.0f64; 3]; stops_m.len()];
+        for (k, (density, extinction_per_m)) in self.fog.profiles().enumerate() {
+            let parts = table.parts(k, direction.y, stops_m).unwrap();
+            for ((sum, parts), &m) in alone.iter_mut().zip(parts).zip(stops_m) {
+                let column_m = density.column_along_m(&RaySegment::flat(EYE_M.y, direction.y, m));
+                for c in 0..3 {
+                    let each = parts.streams[0].iter().zip(&streams);
+                    let source: f32 = each.map(|(light, phase)| light[c] * phase[c]).sum();
+                    let opacity = -(-f64::from(extinction_per_m[c]) * column_m).exp_m1();
+                    sum[c] += f64::from(source) * opacity;
+                }
+            }
+        }
         let mut sums = vec![[0.0f64; 3]];
         for (steps, stops_m) in alone.windows(2).zip(stops_m.windows(2)) {
             let middle_m = 0.5 * (stops_m[0] + stops_m[1]);
@@ -291,9 +300,9 @@ impl Scene {
         }
     }
 
-    fn set_fog(&mut self, layer: Option<&RgbLayer>) {
-        let fog = layer.map(|layer| Fog {
-            layer: layer.clone(),
+    fn set_fog(&mut self, layers: Option<&[RgbLayer]>) {
+        let fog = layers.map(|layers| Fog {
+            layers: layers.to_vec(),
             ground_height_m: 0.0,
             ground_albedo: [0.1; 3],
         });
@@ -349,7 +358,7 @@ impl Scene {
     ) -> [[f64; 3]; 2] {
         self.set_fog(None);
         let in_air = self.lost(sun(), disc);
-        self.set_fog(Some(&truth.layer));
+        self.set_fog(Some(&truth.layers));
         let in_fog = self.lost(sun(), disc);
         let luminance = |rgb: [f64; 3]| RgbSpace::Srgb.luminance(rgb);
         let of = |rgb: Vec3| luminance(rgb.to_array().map(f64::from));
@@ -374,7 +383,7 @@ impl Scene {
 #[test]
 fn ground_throws_shadows_into_air_and_fog() {
     let field = ridge();
-    let truth = Truth::new();
+    let truth = Truth::new(&[(DensityProfile::exponential(150.0), 0.002)]);
     let (planet_radius_m, _) = truth.view.bounds_m();
     let is_lit = |point| is_above_shadow(&field, planet_radius_m, point);
     let [air, fog] = Scene::new().compared(&truth, 1e5, None, &is_lit);
@@ -383,16 +392,31 @@ fn ground_throws_shadows_into_air_and_fog() {
     assert!(fog[0] > 0.5 && fog[1] < 0.01 && fog[2] < 0.04);
 }
 
-/// A disc between fog and sun, whose shadow is a beam of darkness.
+/// A disc between fog and sun, whose shadow is a beam of darkness, in a single layer and in two.
 #[test]
 fn what_a_shadow_map_shows_throws_shadows() {
-    let truth = Truth::new();
+    let raised = DensityProfile::Layer {
+        bottom_m: 200.0,
+        top_m: 400.0,
+    };
+    let [low, raised] =
+        [DensityProfile::exponential(150.0), raised].map(|profile| (profile, 0.002));
     let disc = Disc::new();
     let is_lit = |point| disc.is_lit(point);
-    let [air, fog] = Scene::new().compared(&truth, 800.0, Some(&disc), &is_lit);
-    println!("shadows, error, worst: air {air:.4?}, fog {fog:.4?}");
-    assert!(air[0] > 0.02 && air[1] < 0.001 && air[2] < 0.003);
-    assert!(fog[0] > 0.1 && fog[1] < 0.003 && fog[2] < 0.01);
+    let mut scene = Scene::new();
+    for (layers, [least, most_rms, most]) in [
+        (&[low.clone()][..], [0.1, 0.003, 0.01]),
+        (&[low, raised], [0.3, 0.006, 0.02]),
+    ] {
+        let truth = Truth::new(layers);
+        let [air, fog] = scene.compared(&truth, 800.0, Some(&disc), &is_lit);
+        println!(
+            "{} layers: shadows, error, worst: air {air:.4?}, fog {fog:.4?}",
+            layers.len()
+        );
+        assert!(air[0] > 0.02 && air[1] < 0.001 && air[2] < 0.003);
+        assert!(fog[0] > least && fog[1] < most_rms && fog[2] < most);
+    }
 }
 
 /// Shadows need no tables of their own where none are drawn; there are none of a sun that is down, nor before the first heights.

@@ -104,6 +104,9 @@ struct FogTableView {
     vec3 depth_above;
     float diffuse_scale;
     float sunlit_scale;
+    float layer;
+    float layer_count;
+    float phase_count;
 };
 struct ArticleSky {
     vec3 eye;
@@ -528,10 +531,10 @@ PathOptics fog_single_scattering(FogMedium medium_1, float column_m_1, float to_
     vec3 near_4 = (medium_1.extinction_per_m * to_sun_near_m);
     vec3 far_4 = (medium_1.extinction_per_m * (to_sun_far_m + column_m_1));
     vec3 _e13 = mean_attenuated_source_rgb(near_4, far_4);
-    vec3 sunlit_1 = (light_1.sunlight * _e13);
+    vec3 sunlit_2 = (light_1.sunlight * _e13);
     vec3 _e16 = mean_transmittance_rgb(depth_4);
     vec3 ambient = (light_1.ambient * _e16);
-    return PathOptics(exp(-(depth_4)), (medium_1.scattering_per_m * ((sunlit_1 + ambient) * column_m_1)));
+    return PathOptics(exp(-(depth_4)), (medium_1.scattering_per_m * ((sunlit_2 + ambient) * column_m_1)));
 }
 
 // Uniform fog over a distance (m). It has no upper end, so sunlight is not attenuated.
@@ -1996,6 +1999,12 @@ float fog_row_coordinate(FogTableView view_12, vec3 direction_11) {
     return ((((is_above ? FOG_ROWS : 0.0) + 0.5) + (_e12 * 63.0)) / 128.0);
 }
 
+// Texture coordinate in stacked tables from that in the table of the layer.
+// Cost: no exp.
+float fog_stacked_coordinate(FogTableView view_13, float coordinate_2) {
+    return ((view_13.layer + coordinate_2) / view_13.layer_count);
+}
+
 // Opacity of an optical depth: 1 minus the transmittance, without cancellation.
 // Cost: 3 exp.
 vec3 fog_opacity(vec3 depth_2) {
@@ -2005,8 +2014,8 @@ vec3 fog_opacity(vec3 depth_2) {
 
 // Place of a distance, 0 to 1, from the opacity and the transmittance up to there, relative to those of the whole ray to the ground or through the fog.
 // Cost: 6 exp.
-float fog_distance_place(FogTableView view_13, float sin_elevation_10, vec3 opacity, vec3 transmittance_1) {
-    vec3 vertical = ((sin_elevation_10 > 0.0) ? view_13.depth_above : view_13.depth_below);
+float fog_distance_place(FogTableView view_14, float sin_elevation_10, vec3 opacity, vec3 transmittance_1) {
+    vec3 vertical = ((sin_elevation_10 > 0.0) ? view_14.depth_above : view_14.depth_below);
     vec3 depth_6 = min((vertical / vec3(max(abs(sin_elevation_10), 1e-10))), vec3(1e25));
     vec3 _e17 = fog_opacity(depth_6);
     float whole = dot(_e17, vec3(1.0));
@@ -2016,36 +2025,62 @@ float fog_distance_place(FogTableView view_13, float sin_elevation_10, vec3 opac
     return (1.0 - sqrt(sqrt(left)));
 }
 
-// Sunlight that a stream (0, 1 or 2) scatters once, per unit of opacity, before its scale: from the texture coordinates of distance, row and angle.
+// Sunlight that is scattered once with a phase function, by its index, in a stream (0, 1 or 2), per unit of opacity, before its scale: from the texture coordinates of distance, row and angle.
 // Cost: 3 exp, 2 reads.
-vec3 fog_stream_light(highp sampler3D stream_table, highp sampler2D stream_phase_table, vec3 place_6, float stream) {
-    float layer_5 = ((stream + 0.5) / 3.0);
-    vec4 logarithms = textureLod(stream_table, vec3(vec3(place_6.xy, layer_5)), 0.0);
-    vec4 phase_1 = textureLod(stream_phase_table, vec2(vec2(place_6.z, layer_5)), 0.0);
-    return (exp(logarithms.xyz) * phase_1.xyz);
+vec3 fog_stream_light(FogTableView view_15, highp sampler3D stream_table, highp sampler2D stream_phase_table, vec3 place_6, float phase_1, float stream) {
+    float slice = ((((3.0 * phase_1) + stream) + 0.5) / (3.0 * view_15.phase_count));
+    float _e17 = fog_stacked_coordinate(view_15, slice);
+    vec3 uvw_1 = vec3(place_6.xy, _e17);
+    vec4 logarithms = textureLod(stream_table, vec3(uvw_1), 0.0);
+    vec4 scattered_1 = textureLod(stream_phase_table, vec2(vec2(place_6.z, slice)), 0.0);
+    return (exp(logarithms.xyz) * scattered_1.xyz);
 }
 
-// Fog between the eye and a point, by the optical depth on the way: extinction times `exponential_column_m`, or the column of another profile. Rays end at the ground.
-// Cost: 23 exp, 7 reads.
-PathOptics tabulated_fog(FogTableView view_14, highp sampler3D diffuse_table, highp sampler3D stream_table_1, highp sampler2D stream_phase_table_1, vec3 direction_12, vec3 optical_depth_2) {
+// A layer of fog between the eye and a point, by its optical depth on the way: extinction times `exponential_column_m`, or the column of another profile. Rays end at the ground. Of several layers, transmittances multiply and path radiances add up. A step is a phase function of the fog.
+// Cost: 14 exp, 9 exp a step, 1 read, 6 reads a step.
+PathOptics tabulated_fog(FogTableView view_16, highp sampler3D diffuse_table, highp sampler3D stream_table_1, highp sampler2D stream_phase_table_1, vec3 direction_12, vec3 optical_depth_2) {
+    vec3 sunlit_1 = vec3(0.0);
+    float phase_2 = 0.0;
     vec3 _e7 = fog_opacity(optical_depth_2);
     vec3 transmittance_3 = exp(-(optical_depth_2));
-    float _e11 = azimuth_place(direction_12, view_14.sun);
+    float _e11 = azimuth_place(direction_12, view_16.sun);
     float _e13 = texel_coordinate(_e11, FOG_AZIMUTHS);
-    float _e14 = fog_row_coordinate(view_14, direction_12);
-    float _e16 = fog_distance_place(view_14, direction_12.y, _e7, transmittance_3);
+    float _e14 = fog_row_coordinate(view_16, direction_12);
+    float _e16 = fog_distance_place(view_16, direction_12.y, _e7, transmittance_3);
     float _e18 = texel_coordinate(_e16, FOG_DISTANCES);
-    vec4 _e21 = textureLod(diffuse_table, vec3(vec3(_e13, _e14, _e18)), 0.0);
-    vec3 diffuse = _e21.xyz;
-    float _e24 = one_minus_cos_between(direction_12, view_14.sun);
-    float _e25 = phase_place(_e24);
-    float _e27 = texel_coordinate(_e25, PHASE_ANGLES);
-    vec3 place_10 = vec3(_e18, _e14, _e27);
-    vec3 _e30 = fog_stream_light(stream_table_1, stream_phase_table_1, place_10, 0.0);
-    vec3 _e32 = fog_stream_light(stream_table_1, stream_phase_table_1, place_10, 1.0);
-    vec3 _e35 = fog_stream_light(stream_table_1, stream_phase_table_1, place_10, 2.0);
-    vec3 sunlit_2 = ((_e30 + _e32) + _e35);
-    vec3 source_1 = ((view_14.diffuse_scale * diffuse) + (view_14.sunlit_scale * max(sunlit_2, vec3(0.0))));
+    float _e19 = fog_stacked_coordinate(view_16, _e18);
+    vec3 uvw_2 = vec3(_e13, _e14, _e19);
+    vec4 _e22 = textureLod(diffuse_table, vec3(uvw_2), 0.0);
+    vec3 diffuse = _e22.xyz;
+    float _e25 = one_minus_cos_between(direction_12, view_16.sun);
+    float _e26 = phase_place(_e25);
+    float _e28 = texel_coordinate(_e26, PHASE_ANGLES);
+    vec3 place_10 = vec3(_e18, _e14, _e28);
+    bool loop_init_12 = true;
+    while(true) {
+        if (!loop_init_12) {
+            float _e51 = phase_2;
+            phase_2 = (_e51 + 1.0);
+        }
+        loop_init_12 = false;
+        float _e35 = phase_2;
+        if ((_e35 < view_16.phase_count)) {
+        } else {
+            break;
+        }
+        {
+            vec3 _e38 = sunlit_1;
+            float _e39 = phase_2;
+            vec3 _e41 = fog_stream_light(view_16, stream_table_1, stream_phase_table_1, place_10, _e39, 0.0);
+            float _e42 = phase_2;
+            vec3 _e44 = fog_stream_light(view_16, stream_table_1, stream_phase_table_1, place_10, _e42, 1.0);
+            float _e46 = phase_2;
+            vec3 _e48 = fog_stream_light(view_16, stream_table_1, stream_phase_table_1, place_10, _e46, 2.0);
+            sunlit_1 = (_e38 + ((_e41 + _e44) + _e48));
+        }
+    }
+    vec3 _e57 = sunlit_1;
+    vec3 source_1 = ((view_16.diffuse_scale * diffuse) + (view_16.sunlit_scale * max(_e57, vec3(0.0))));
     return PathOptics(transmittance_3, (_e7 * source_1));
 }
 
@@ -2085,13 +2120,13 @@ vec3 article_transmittance(vec3 from_m_8, vec3 to_m_6) {
     vec3 sum_5 = vec3(0.0);
     int i_12 = 0;
     vec3 ds = ((to_m_6 - from_m_8) / vec3(8.0));
-    bool loop_init_12 = true;
+    bool loop_init_13 = true;
     while(true) {
-        if (!loop_init_12) {
+        if (!loop_init_13) {
             int _e23 = i_12;
             i_12 = (_e23 + 1);
         }
-        loop_init_12 = false;
+        loop_init_13 = false;
         int _e11 = i_12;
         if ((_e11 < ARTICLE_STEPS)) {
         } else {
@@ -2141,11 +2176,11 @@ ArticleSky article_sky(float eye_altitude_m, float zenith_illuminance) {
 
 // Light that a point scatters along a view ray, per metre.
 // Cost: 6 exp, 3 exp a step; 8 steps.
-vec3 article_source(ArticleSky sky, vec3 position_7, vec3 view_15, vec3 sun_1) {
+vec3 article_source(ArticleSky sky, vec3 position_7, vec3 view_17, vec3 sun_1) {
     float _e5 = article_distance_m(position_7, sun_1, ARTICLE_TOP_RADIUS_M);
     vec3 leaves = (position_7 + (sun_1 * _e5));
     vec3 _e8 = article_transmittance(position_7, leaves);
-    float mu_3 = dot(view_15, sun_1);
+    float mu_3 = dot(view_17, sun_1);
     vec3 _e10 = article_sigma_rayleigh(position_7);
     float _e11 = article_rayleigh_phase(mu_3);
     vec3 rayleigh = (_e10 * _e11);
@@ -2157,20 +2192,20 @@ vec3 article_source(ArticleSky sky, vec3 position_7, vec3 view_15, vec3 sun_1) {
 
 // Luminance of the sky along a direction above the horizon, without the sun's disc.
 // Cost: 15 exp a step; 8 steps, in each of which two marches of 8 steps take 6 of these, 456 in all.
-vec3 article_luminance(ArticleSky sky_1, vec3 view_16, vec3 sun_2) {
+vec3 article_luminance(ArticleSky sky_1, vec3 view_18, vec3 sun_2) {
     vec3 sum_6 = vec3(0.0);
     int i_13 = 0;
-    float _e6 = article_distance_m(sky_1.eye, view_16, ARTICLE_TOP_RADIUS_M);
-    vec3 leaves_1 = (sky_1.eye + (view_16 * _e6));
+    float _e6 = article_distance_m(sky_1.eye, view_18, ARTICLE_TOP_RADIUS_M);
+    vec3 leaves_1 = (sky_1.eye + (view_18 * _e6));
     vec3 ds_1 = ((leaves_1 - sky_1.eye) / vec3(8.0));
     vec3 direction_15 = (ds_1 / vec3(length(ds_1)));
-    bool loop_init_13 = true;
+    bool loop_init_14 = true;
     while(true) {
-        if (!loop_init_13) {
+        if (!loop_init_14) {
             int _e38 = i_13;
             i_13 = (_e38 + 1);
         }
-        loop_init_13 = false;
+        loop_init_14 = false;
         int _e22 = i_13;
         if ((_e22 < ARTICLE_STEPS)) {
         } else {
@@ -2191,11 +2226,11 @@ vec3 article_luminance(ArticleSky sky_1, vec3 view_16, vec3 sun_2) {
 
 // Luminance of the sun's disc along a direction above the horizon, whose edge is smooth from 0.95 to 1.05 of its radius. The cosine is clamped to 1, unlike as printed.
 // Cost: 3 exp, 3 exp a step; 8 steps.
-vec3 article_disc(ArticleSky sky_2, vec3 view_17, vec3 sun_3) {
-    float angle = acos(min(dot(view_17, sun_3), 1.0));
+vec3 article_disc(ArticleSky sky_2, vec3 view_19, vec3 sun_3) {
+    float angle = acos(min(dot(view_19, sun_3), 1.0));
     float disc = (1.0 - smoothstep((0.95 * sky_2.sun_radius_rad), (1.05 * sky_2.sun_radius_rad), angle));
-    float _e19 = article_distance_m(sky_2.eye, view_17, ARTICLE_TOP_RADIUS_M);
-    vec3 leaves_2 = (sky_2.eye + (view_17 * _e19));
+    float _e19 = article_distance_m(sky_2.eye, view_19, ARTICLE_TOP_RADIUS_M);
+    vec3 leaves_2 = (sky_2.eye + (view_19 * _e19));
     vec3 _e25 = article_transmittance(sky_2.eye, leaves_2);
     return ((sky_2.outer_space * disc) * _e25);
 }

@@ -131,9 +131,9 @@ struct FogTableView {
     float3 depth_above;
     float diffuse_scale;
     float sunlit_scale;
-    int _end_pad_0;
-    int _end_pad_1;
-    int _end_pad_2;
+    float layer;
+    float layer_count;
+    float phase_count;
 };
 
 struct ArticleSky {
@@ -628,10 +628,10 @@ PathOptics fog_single_scattering(FogMedium medium_1, float column_m_1, float to_
     float3 near_4 = (medium_1.extinction_per_m * to_sun_near_m);
     float3 far_4 = (medium_1.extinction_per_m * (to_sun_far_m + column_m_1));
     const float3 _e13 = mean_attenuated_source_rgb(near_4, far_4);
-    float3 sunlit_1 = (light_1.sunlight * _e13);
+    float3 sunlit_2 = (light_1.sunlight * _e13);
     const float3 _e16 = mean_transmittance_rgb(depth_4);
     float3 ambient = (light_1.ambient * _e16);
-    const PathOptics pathoptics_3 = ConstructPathOptics(exp(-(depth_4)), (medium_1.scattering_per_m * ((sunlit_1 + ambient) * column_m_1)));
+    const PathOptics pathoptics_3 = ConstructPathOptics(exp(-(depth_4)), (medium_1.scattering_per_m * ((sunlit_2 + ambient) * column_m_1)));
     return pathoptics_3;
 }
 
@@ -2263,6 +2263,13 @@ float fog_row_coordinate(FogTableView view_12, float3 direction_11)
     return ((((is_above ? FOG_ROWS : 0.0) + 0.5) + (_e12 * 63.0)) / 128.0);
 }
 
+// Texture coordinate in stacked tables from that in the table of the layer.
+// Cost: no exp.
+float fog_stacked_coordinate(FogTableView view_13, float coordinate_2)
+{
+    return ((view_13.layer + coordinate_2) / view_13.layer_count);
+}
+
 // Opacity of an optical depth: 1 minus the transmittance, without cancellation.
 // Cost: 3 exp.
 float3 fog_opacity(float3 depth_2)
@@ -2273,9 +2280,9 @@ float3 fog_opacity(float3 depth_2)
 
 // Place of a distance, 0 to 1, from the opacity and the transmittance up to there, relative to those of the whole ray to the ground or through the fog.
 // Cost: 6 exp.
-float fog_distance_place(FogTableView view_13, float sin_elevation_10, float3 opacity, float3 transmittance_1)
+float fog_distance_place(FogTableView view_14, float sin_elevation_10, float3 opacity, float3 transmittance_1)
 {
-    float3 vertical = ((sin_elevation_10 > 0.0) ? view_13.depth_above : view_13.depth_below);
+    float3 vertical = ((sin_elevation_10 > 0.0) ? view_14.depth_above : view_14.depth_below);
     float3 depth_6 = min((vertical / (max(abs(sin_elevation_10), 1e-10)).xxx), (1e25).xxx);
     const float3 _e17 = fog_opacity(depth_6);
     float whole = dot(_e17, (1.0).xxx);
@@ -2285,38 +2292,65 @@ float fog_distance_place(FogTableView view_13, float sin_elevation_10, float3 op
     return (1.0 - sqrt(sqrt(left)));
 }
 
-// Sunlight that a stream (0, 1 or 2) scatters once, per unit of opacity, before its scale: from the texture coordinates of distance, row and angle.
+// Sunlight that is scattered once with a phase function, by its index, in a stream (0, 1 or 2), per unit of opacity, before its scale: from the texture coordinates of distance, row and angle.
 // Cost: 3 exp, 2 reads.
-float3 fog_stream_light(Texture3D<float4> stream_table, Texture2D<float4> stream_phase_table, SamplerState linear_sampler_4, float3 place_6, float stream)
+float3 fog_stream_light(FogTableView view_15, Texture3D<float4> stream_table, Texture2D<float4> stream_phase_table, SamplerState linear_sampler_4, float3 place_6, float phase_1, float stream)
 {
-    float layer_5 = ((stream + 0.5) / 3.0);
-    float4 logarithms = stream_table.SampleLevel(linear_sampler_4, float3(place_6.xy, layer_5), 0.0);
-    float4 phase_1 = stream_phase_table.SampleLevel(linear_sampler_4, float2(place_6.z, layer_5), 0.0);
-    return (exp(logarithms.xyz) * phase_1.xyz);
+    float slice = ((((3.0 * phase_1) + stream) + 0.5) / (3.0 * view_15.phase_count));
+    const float _e17 = fog_stacked_coordinate(view_15, slice);
+    float3 uvw_1 = float3(place_6.xy, _e17);
+    float4 logarithms = stream_table.SampleLevel(linear_sampler_4, uvw_1, 0.0);
+    float4 scattered_1 = stream_phase_table.SampleLevel(linear_sampler_4, float2(place_6.z, slice), 0.0);
+    return (exp(logarithms.xyz) * scattered_1.xyz);
 }
 
-// Fog between the eye and a point, by the optical depth on the way: extinction times `exponential_column_m`, or the column of another profile. Rays end at the ground.
-// Cost: 23 exp, 7 reads.
-PathOptics tabulated_fog(FogTableView view_14, Texture3D<float4> diffuse_table, Texture3D<float4> stream_table_1, Texture2D<float4> stream_phase_table_1, SamplerState linear_sampler_5, float3 direction_12, float3 optical_depth_2)
+// A layer of fog between the eye and a point, by its optical depth on the way: extinction times `exponential_column_m`, or the column of another profile. Rays end at the ground. Of several layers, transmittances multiply and path radiances add up. A step is a phase function of the fog.
+// Cost: 14 exp, 9 exp a step, 1 read, 6 reads a step.
+PathOptics tabulated_fog(FogTableView view_16, Texture3D<float4> diffuse_table, Texture3D<float4> stream_table_1, Texture2D<float4> stream_phase_table_1, SamplerState linear_sampler_5, float3 direction_12, float3 optical_depth_2)
 {
+    float3 sunlit_1 = (0.0).xxx;
+    float phase_2 = 0.0;
+
     const float3 _e7 = fog_opacity(optical_depth_2);
     float3 transmittance_3 = exp(-(optical_depth_2));
-    const float _e11 = azimuth_place(direction_12, view_14.sun);
+    const float _e11 = azimuth_place(direction_12, view_16.sun);
     const float _e13 = texel_coordinate(_e11, FOG_AZIMUTHS);
-    const float _e14 = fog_row_coordinate(view_14, direction_12);
-    const float _e16 = fog_distance_place(view_14, direction_12.y, _e7, transmittance_3);
+    const float _e14 = fog_row_coordinate(view_16, direction_12);
+    const float _e16 = fog_distance_place(view_16, direction_12.y, _e7, transmittance_3);
     const float _e18 = texel_coordinate(_e16, FOG_DISTANCES);
-    float4 _e21 = diffuse_table.SampleLevel(linear_sampler_5, float3(_e13, _e14, _e18), 0.0);
-    float3 diffuse = _e21.xyz;
-    const float _e24 = one_minus_cos_between(direction_12, view_14.sun);
-    const float _e25 = phase_place(_e24);
-    const float _e27 = texel_coordinate(_e25, PHASE_ANGLES);
-    float3 place_10 = float3(_e18, _e14, _e27);
-    const float3 _e30 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, 0.0);
-    const float3 _e32 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, 1.0);
-    const float3 _e35 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, 2.0);
-    float3 sunlit_2 = ((_e30 + _e32) + _e35);
-    float3 source_1 = ((view_14.diffuse_scale * diffuse) + (view_14.sunlit_scale * max(sunlit_2, (0.0).xxx)));
+    const float _e19 = fog_stacked_coordinate(view_16, _e18);
+    float3 uvw_2 = float3(_e13, _e14, _e19);
+    float4 _e22 = diffuse_table.SampleLevel(linear_sampler_5, uvw_2, 0.0);
+    float3 diffuse = _e22.xyz;
+    const float _e25 = one_minus_cos_between(direction_12, view_16.sun);
+    const float _e26 = phase_place(_e25);
+    const float _e28 = texel_coordinate(_e26, PHASE_ANGLES);
+    float3 place_10 = float3(_e18, _e14, _e28);
+    bool loop_init_12 = true;
+    while(true) {
+        if (!loop_init_12) {
+            float _e51 = phase_2;
+            phase_2 = (_e51 + 1.0);
+        }
+        loop_init_12 = false;
+        float _e35 = phase_2;
+        if ((_e35 < view_16.phase_count)) {
+        } else {
+            break;
+        }
+        {
+            float3 _e38 = sunlit_1;
+            float _e39 = phase_2;
+            const float3 _e41 = fog_stream_light(view_16, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e39, 0.0);
+            float _e42 = phase_2;
+            const float3 _e44 = fog_stream_light(view_16, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e42, 1.0);
+            float _e46 = phase_2;
+            const float3 _e48 = fog_stream_light(view_16, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e46, 2.0);
+            sunlit_1 = (_e38 + ((_e41 + _e44) + _e48));
+        }
+    }
+    float3 _e57 = sunlit_1;
+    float3 source_1 = ((view_16.diffuse_scale * diffuse) + (view_16.sunlit_scale * max(_e57, (0.0).xxx)));
     const PathOptics pathoptics_13 = ConstructPathOptics(transmittance_3, (_e7 * source_1));
     return pathoptics_13;
 }
@@ -2363,13 +2397,13 @@ float3 article_transmittance(float3 from_m_8, float3 to_m_6)
     int i_12 = int(0);
 
     float3 ds = ((to_m_6 - from_m_8) / (8.0).xxx);
-    bool loop_init_12 = true;
+    bool loop_init_13 = true;
     while(true) {
-        if (!loop_init_12) {
+        if (!loop_init_13) {
             int _e23 = i_12;
             i_12 = asint(asuint(_e23) + asuint(int(1)));
         }
-        loop_init_12 = false;
+        loop_init_13 = false;
         int _e11 = i_12;
         if ((_e11 < ARTICLE_STEPS)) {
         } else {
@@ -2433,12 +2467,12 @@ ArticleSky article_sky(float eye_altitude_m, float zenith_illuminance)
 
 // Light that a point scatters along a view ray, per metre.
 // Cost: 6 exp, 3 exp a step; 8 steps.
-float3 article_source(ArticleSky sky, float3 position_7, float3 view_15, float3 sun_1)
+float3 article_source(ArticleSky sky, float3 position_7, float3 view_17, float3 sun_1)
 {
     const float _e5 = article_distance_m(position_7, sun_1, ARTICLE_TOP_RADIUS_M);
     float3 leaves = (position_7 + (sun_1 * _e5));
     const float3 _e8 = article_transmittance(position_7, leaves);
-    float mu_3 = dot(view_15, sun_1);
+    float mu_3 = dot(view_17, sun_1);
     const float3 _e10 = article_sigma_rayleigh(position_7);
     const float _e11 = article_rayleigh_phase(mu_3);
     float3 rayleigh = (_e10 * _e11);
@@ -2450,22 +2484,22 @@ float3 article_source(ArticleSky sky, float3 position_7, float3 view_15, float3 
 
 // Luminance of the sky along a direction above the horizon, without the sun's disc.
 // Cost: 15 exp a step; 8 steps, in each of which two marches of 8 steps take 6 of these, 456 in all.
-float3 article_luminance(ArticleSky sky_1, float3 view_16, float3 sun_2)
+float3 article_luminance(ArticleSky sky_1, float3 view_18, float3 sun_2)
 {
     float3 sum_6 = (0.0).xxx;
     int i_13 = int(0);
 
-    const float _e6 = article_distance_m(sky_1.eye, view_16, ARTICLE_TOP_RADIUS_M);
-    float3 leaves_1 = (sky_1.eye + (view_16 * _e6));
+    const float _e6 = article_distance_m(sky_1.eye, view_18, ARTICLE_TOP_RADIUS_M);
+    float3 leaves_1 = (sky_1.eye + (view_18 * _e6));
     float3 ds_1 = ((leaves_1 - sky_1.eye) / (8.0).xxx);
     float3 direction_15 = (ds_1 / (length(ds_1)).xxx);
-    bool loop_init_13 = true;
+    bool loop_init_14 = true;
     while(true) {
-        if (!loop_init_13) {
+        if (!loop_init_14) {
             int _e38 = i_13;
             i_13 = asint(asuint(_e38) + asuint(int(1)));
         }
-        loop_init_13 = false;
+        loop_init_14 = false;
         int _e22 = i_13;
         if ((_e22 < ARTICLE_STEPS)) {
         } else {
@@ -2486,12 +2520,12 @@ float3 article_luminance(ArticleSky sky_1, float3 view_16, float3 sun_2)
 
 // Luminance of the sun's disc along a direction above the horizon, whose edge is smooth from 0.95 to 1.05 of its radius. The cosine is clamped to 1, unlike as printed.
 // Cost: 3 exp, 3 exp a step; 8 steps.
-float3 article_disc(ArticleSky sky_2, float3 view_17, float3 sun_3)
+float3 article_disc(ArticleSky sky_2, float3 view_19, float3 sun_3)
 {
-    float angle = acos(min(dot(view_17, sun_3), 1.0));
+    float angle = acos(min(dot(view_19, sun_3), 1.0));
     float disc = (1.0 - smoothstep((0.95 * sky_2.sun_radius_rad), (1.05 * sky_2.sun_radius_rad), angle));
-    const float _e19 = article_distance_m(sky_2.eye, view_17, ARTICLE_TOP_RADIUS_M);
-    float3 leaves_2 = (sky_2.eye + (view_17 * _e19));
+    const float _e19 = article_distance_m(sky_2.eye, view_19, ARTICLE_TOP_RADIUS_M);
+    float3 leaves_2 = (sky_2.eye + (view_19 * _e19));
     const float3 _e25 = article_transmittance(sky_2.eye, leaves_2);
     return ((sky_2.outer_space * disc) * _e25);
 }

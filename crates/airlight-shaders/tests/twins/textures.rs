@@ -45,10 +45,11 @@ fn size(name: &str) -> [usize; 3] {
         "diffuse_table_3d" => [
             fog_table::FOG_AZIMUTHS,
             2.0 * fog_table::FOG_ROWS,
-            fog_table::FOG_DISTANCES,
+            2.0 * fog_table::FOG_DISTANCES,
         ],
-        "stream_table_3d" => [fog_table::FOG_DISTANCES, 2.0 * fog_table::FOG_ROWS, 3.0],
-        "stream_phase_table_2d" => [sky_tables::PHASE_ANGLES, 3.0, 1.0],
+        // Two layers, of two phase functions.
+        "stream_table_3d" => [fog_table::FOG_DISTANCES, 2.0 * fog_table::FOG_ROWS, 12.0],
+        "stream_phase_table_2d" => [sky_tables::PHASE_ANGLES, 6.0, 1.0],
         _ => [
             sky_tables::AERIAL_AZIMUTHS,
             rows,

@@ -358,9 +358,9 @@ fn stated_error(text: &str) -> f64 {
     after.split_once(' ').unwrap().0.parse().unwrap()
 }
 
-/// Fog of the profiles and droplets that the device draws, against the solver.
+/// Fog of the profiles and droplets that the device draws, and of several layers, against the solver.
 #[test]
-fn one_layer_of_fog_is_that_of_the_solver() {
+fn fog_is_that_of_the_solver() {
     let mut window = window(options(EVENING));
     for (fog, most_percent) in [
         ("scale_height_m = 30, droplets = \"coarse\"", 0.3),
@@ -369,6 +369,14 @@ fn one_layer_of_fog_is_that_of_the_solver() {
         ("base_height_m = 20, droplets = \"mist\"", 0.5),
         ("top_m = 40, droplets = \"cloud-c1\"", 0.4),
         ("top_m = 40, droplets = \"isotropic\"", 0.4),
+        (
+            "scale_height_m = 10, layers = [{ visibility_m = 2000, top_m = 60, droplets = \"mist\" }]",
+            0.4,
+        ),
+        (
+            "top_m = 20, layers = [{ visibility_m = 900, base_height_m = 10 }, { visibility_m = 4000, scale_height_m = 200 }]",
+            0.4,
+        ),
     ] {
         let text = format!("{EVENING}\nfog = {{ visibility_m = 600, {fog} }}");
         let state = State::of_scene(Scene::from_toml(&text).unwrap());
@@ -380,11 +388,13 @@ fn one_layer_of_fog_is_that_of_the_solver() {
     }
 }
 
-/// Several layers of fog, which the device does not draw: the window shows what the program draws, and saves it.
+/// More layers of fog than the device draws: the window shows what the program draws, and saves it.
 #[test]
-fn layers_of_fog_are_drawn_by_the_library() {
+fn many_layers_of_fog_are_drawn_by_the_library() {
+    let thin = |top_m: f64| format!("[[fog.layers]]\nvisibility_m = 8000\ntop_m = {top_m}\n");
     let text = format!(
-        "{EVENING}\noutput.exposure = 13\n[fog]\nvisibility_m = 800\ntop_m = 20\n[[fog.layers]]\nvisibility_m = 300\nbase_height_m = 10"
+        "{EVENING}\noutput.exposure = 13\n[fog]\nvisibility_m = 800\ntop_m = 20\n{}[[fog.layers]]\nvisibility_m = 300\nbase_height_m = 10",
+        [30.0, 40.0, 50.0].map(thin).concat()
     );
     let mut window = window(options(&text));
     settle(&mut window);
@@ -425,7 +435,7 @@ fn layers_of_fog_are_drawn_by_the_library() {
     let rms = (squares / f64::from(count)).sqrt();
     println!("levels: rms {rms:.2}, worst {worst:.1}");
     assert!(rms < 2.0, "{rms}");
-    // The first layer alone, which the device draws while the picture changes, is another picture.
+    // The first four, which the device draws while the picture changes, make another picture.
     let luminance = |k: usize| RgbSpace::Srgb.luminance(device[k].map(f64::from));
     let first = (0..device.len()).step_by(997).map(luminance).sum::<f64>();
     let solved = frame.pixels(&renderer.layout().only_frame().unwrap(), Layer::Sky);

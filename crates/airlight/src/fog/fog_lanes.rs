@@ -30,9 +30,9 @@ pub(crate) struct FogLanes<const N: usize> {
     scattering: FogScattering,
     /// Weights of the layers' scattering towards the eye in the mean phase function: columns over the scattering optical depth of
     /// all, m.
-    mean_weights: Vec<Spectrum<N>>,
+    pub(super) mean_weights: Vec<Spectrum<N>>,
     /// Heights at which rays are split, in increasing order, m.
-    breakpoints_m: Vec<f64>,
+    pub(super) breakpoints_m: Vec<f64>,
     /// Diffuse light; `None` for single scattering, and for fog without an upper end.
     pub(super) field: Option<Field<N>>,
 }

@@ -315,6 +315,35 @@ pub(super) fn merge_layers<const N: usize>(
     Ok(merged)
 }
 
+/// A phase function of layers, and its streams.
+#[derive(Clone, Debug)]
+pub(super) struct StreamedPhase<const N: usize> {
+    part: Part<N>,
+}
+
+impl<const N: usize> StreamedPhase<N> {
+    /// The phase functions of layers, each once.
+    pub fn of(layers: &[MergedLayer<N>]) -> Vec<Self> {
+        let mut all: Vec<Self> = Vec::new();
+        for part in layers.iter().flat_map(|layer| &layer.parts) {
+            if all.iter().all(|known| *known.phase() != part.layer.phase) {
+                all.push(Self { part: part.clone() });
+            }
+        }
+        all
+    }
+
+    pub fn phase(&self) -> &PhaseFunction {
+        &self.part.layer.phase
+    }
+
+    /// The phase function at a cosine of the scattering angle by stream, 1/sr; the sum is all of it.
+    pub fn towards_eye(&self, cos_sun: f64) -> [Spectrum<N>; STREAMS] {
+        let whole = self.part.layer.phase_lanes(cos_sun);
+        self.part.shares(cos_sun).map(|share| whole * share)
+    }
+}
+
 impl<const N: usize> MergedLayer<N> {
     /// Scattering coefficient times phase function towards the eye, summed over constituents, 1/(m sr).
     #[inline]
@@ -395,6 +424,14 @@ impl<const N: usize> MergedLayer<N> {
             std::array::from_fn(|k| self.extinction_per_m - unscattered * kept_by_peak(k))
         };
         [self.peak.narrow, self.peak.whole()].map(extinction)
+    }
+
+    /// Scattering with a phase function, 1/m.
+    pub fn scattering_with(&self, phase: &PhaseFunction) -> Spectrum<N> {
+        let parts = self.parts.iter().filter(|part| part.layer.phase == *phase);
+        parts.fold(Spectrum::ZERO, |sum, part| {
+            sum + part.layer.scattering_per_m
+        })
     }
 
     /// Input of the solver; `None` for uniform density, which has no upper end.

@@ -26,6 +26,7 @@ mod patch_view;
 mod patches;
 mod ray_block;
 mod ray_cuts;
+mod rays;
 mod single_scattering;
 mod spectral;
 mod table;

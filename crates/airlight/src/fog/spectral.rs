@@ -7,7 +7,7 @@ use super::layer::{LayerLanes, RgbLayer};
 use super::lighting::{FogLighting, FogScattering, Ground};
 use super::multiple::DEGREES;
 use super::table::TableLanes;
-use crate::atmosphere::{Constituent, RaySegment};
+use crate::atmosphere::{Constituent, DensityProfile, RaySegment};
 use crate::control::Control;
 use crate::math::slices::check_length;
 use crate::spectrum::{SpectralCurve, Spectrum, WavelengthGrid};
@@ -367,6 +367,12 @@ impl RgbFog {
         self.lanes.path_along(ray, cos_sun).into()
     }
 
+    /// Density profiles of the fog, each once, with the sum of the extinction coefficients (1/m) of its layers at density 1.
+    pub fn profiles(&self) -> impl ExactSizeIterator<Item = (&DensityProfile, [f32; 3])> {
+        let layers = self.lanes.layers.iter();
+        layers.map(|layer| (&layer.density, layer.extinction_per_m.0))
+    }
+
     /// Optical depth along a ray. Exact for all layers, over flat and round ground.
     #[inline]
     pub fn optical_depth(&self, ray: &RaySegment) -> [f32; 3] {
@@ -429,36 +435,53 @@ impl RgbFogTable {
 }
 
 impl RgbFogTable {
-    /// Parts of the path radiance to some distances (m, increasing, not beyond the ground) along rays of one elevation, for tables on
-    /// other devices. `None` for fog without multiple scattering, of several profiles, or over round ground.
+    /// Parts of the path radiance that the layers of a density profile, by its index in [`RgbFog::profiles`], add up to some distances (m,
+    /// increasing, not beyond the ground) along rays of one elevation, for tables on other devices. `None` for fog without multiple
+    /// scattering, without an upper end, or over round ground, and for an index beyond the last.
     ///
-    /// The path radiance along a unit vector is its opacity, `1 - T`, times the sum of [`RgbFogParts::diffuse`] and, for each stream, of
-    /// [`RgbFogParts::streams`] times [`RgbFogTable::sun_streams`]; negative sums count as 0.
-    pub fn parts(&self, sin_elevation: f64, distances_m: &[f64]) -> Option<Vec<RgbFogParts>> {
-        let parts = self.lanes.parts(sin_elevation, distances_m)?;
+    /// The path radiance along a unit vector is the sum over profiles of `1 - T`, where `T` is the transmittance of the layers of the profile
+    /// alone, times the sum of [`RgbFogParts::diffuse`] and, for each phase function and stream, of [`RgbFogParts::streams`] times
+    /// [`RgbFogTable::sun_streams`]; negative sums of these count as 0.
+    pub fn parts(
+        &self,
+        profile: usize,
+        sin_elevation: f64,
+        distances_m: &[f64],
+    ) -> Option<Vec<RgbFogParts>> {
+        let parts = self.lanes.parts(profile, sin_elevation, distances_m)?;
         let parts = parts.into_iter().map(|parts| RgbFogParts {
             modes: parts.modes.map(|lanes| lanes.0),
-            streams: parts.streams.map(|lanes| lanes.0),
+            streams: parts
+                .streams
+                .into_iter()
+                .map(|streams| streams.map(|lanes| lanes.0))
+                .collect(),
         });
         Some(parts.collect())
     }
 
-    /// Sunlight that the fog scatters towards the eye at density 1, by stream, at a cosine of the angle between ray and sun: irradiance
-    /// times scattering coefficient times the stream's share of the phase function, which can be negative.
-    pub fn sun_streams(&self, cos_sun: f64) -> [[f32; 3]; FOG_STREAMS] {
-        self.lanes.sun_streams(cos_sun).map(|lanes| lanes.0)
+    /// Number of different phase functions in the fog.
+    pub fn phase_count(&self) -> usize {
+        self.lanes.phase_count()
+    }
+
+    /// Sunlight times a phase function of the fog, by stream, at a cosine of the angle between ray and sun: irradiance times the stream's share
+    /// of the phase function, which can be negative. Phase functions count once, in the order of the layers; 0 for an index beyond the last.
+    pub fn sun_streams(&self, phase: usize, cos_sun: f64) -> [[f32; 3]; FOG_STREAMS] {
+        self.lanes.sun_streams(phase, cos_sun).map(|lanes| lanes.0)
     }
 }
 
 /// Number of streams of sunlight: light from which the forward peak removes nothing, half of its fraction, and all.
 pub const FOG_STREAMS: usize = STREAMS;
 
-/// Path radiance of fog per unit of opacity in parts ([`RgbFogTable::parts`]).
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Path radiance that layers of fog of one density profile add, per unit of their opacity, in parts ([`RgbFogTable::parts`]).
+#[derive(Clone, Debug, PartialEq)]
 pub struct RgbFogParts {
     modes: [[f32; 3]; DEGREES],
-    /// Sunlight scattered once, by stream, per unit of [`RgbFogTable::sun_streams`].
-    pub streams: [[f32; 3]; FOG_STREAMS],
+    /// Sunlight scattered once, for each phase function of the fog by stream, per unit of [`RgbFogTable::sun_streams`]. With the phase
+    /// functions of other layers it is what forward peaks of these layers scatter on into the ray.
+    pub streams: Vec<[[f32; 3]; FOG_STREAMS]>,
 }
 
 impl RgbFogParts {

@@ -2,9 +2,11 @@
 
 use super::closed_forms::{Lanes, OPAQUE};
 use super::fog_lanes::FogLanes;
-use super::layer::MergedLayer;
+use super::layer::StreamedPhase;
+use super::lighting::DirectionalLight;
 use super::multiple::{self, DEGREES, Field, KEPT};
 use super::ray_block::{RAYS, RayBlock, in_lanes, store};
+use super::rays::Rays;
 use crate::atmosphere::RaySegment;
 use crate::math::interpolation::cubic_weights;
 use crate::math::simd::vectorized;
@@ -41,6 +43,8 @@ pub(crate) struct TableLanes<const N: usize> {
     fog: Arc<FogLanes<N>>,
     eye_height_m: f64,
     table: Option<Table<N>>,
+    /// Phase functions of the layers, each once.
+    phases: Vec<StreamedPhase<N>>,
 }
 
 #[derive(Debug)]
@@ -67,6 +71,7 @@ impl<const N: usize> TableLanes<N> {
         let table = (fog.field.is_some() && fog.ground.is_flat() && fog.layers.len() == 1)
             .then(|| Table::new(&fog, eye_height_m));
         Self {
+            phases: StreamedPhase::of(&fog.layers),
             fog,
             eye_height_m,
             table,
@@ -274,10 +279,18 @@ impl<const N: usize> TableLanes<N> {
         self.nodes(field, &ray, &lengths_m, ground)
     }
 
-    /// Parts of the path radiance to some distances (increasing, not beyond the ground) along rays of one elevation; `None` if the fog is
-    /// not tabulated.
-    pub fn parts(&self, sin_elevation: f64, distances_m: &[f64]) -> Option<Vec<FogParts<N>>> {
-        let field = self.table.as_ref().and(self.fog.field.as_ref())?;
+    /// Parts of the path radiance that a layer adds, up to some distances (increasing, not beyond the ground) along rays of one elevation;
+    /// `None` for fog without multiple scattering, without an upper end, or over round ground.
+    pub fn parts(
+        &self,
+        layer: usize,
+        sin_elevation: f64,
+        distances_m: &[f64],
+    ) -> Option<Vec<FogParts<N>>> {
+        let fog = &*self.fog;
+        let has_ends = fog.layers.iter().all(|layer| !layer.density.is_uniform());
+        let is_tabulated = has_ends && fog.ground.is_flat() && layer < fog.layers.len();
+        let field = fog.field.as_ref().filter(|_| is_tabulated)?;
         let ray = RaySegment::flat(self.eye_height_m, sin_elevation, f64::INFINITY);
         let mut lengths_m = distances_m.to_vec();
         // To the ground or through all fog, from where light arrives that the forward peak scatters into the ray.
@@ -288,28 +301,59 @@ impl<const N: usize> TableLanes<N> {
         };
         let ground = if falls { lengths_m.len() } else { usize::MAX };
         lengths_m.push(lengths_m.last().map_or(end_m, |last| end_m.max(*last)));
-        let mut nodes = self.nodes(field, &ray, &lengths_m, ground);
-        nodes.pop();
-        let has_sun = self.table.as_ref().is_some_and(|table| table.sun.is_some());
-        let parts = nodes.iter().map(|node| FogParts {
-            modes: std::array::from_fn(|m| Spectrum::from_fn(|lane| node.modes[lane].0[m])),
-            streams: std::array::from_fn(|k| match has_sun {
-                true => Spectrum::from_fn(|lane| node.sunlit[lane].stream(k)),
-                false => Spectrum::ZERO,
-            }),
-        });
-        Some(parts.collect())
+        let rays = Rays::new(fog, field, &ray, &lengths_m, ground);
+        let per_opacity = self.per_opacity(layer, &ray, &lengths_m);
+        let dark = FogParts {
+            modes: [Spectrum::ZERO; DEGREES],
+            streams: vec![[Spectrum::ZERO; STREAMS]; self.phases.len()],
+        };
+        let mut all = vec![dark; distances_m.len()];
+        let has_sun = self.sun().is_some();
+        for m in 0..if has_sun { DEGREES } else { 1 } {
+            for (parts, light) in all.iter_mut().zip(per_opacity(rays.diffuse(layer, m))) {
+                parts.modes[m] = light;
+            }
+        }
+        for k in 0..if has_sun { STREAMS } else { 0 } {
+            let again = match k < KEPT {
+                true => per_opacity(rays.scattered_again(layer, k)),
+                false => vec![Spectrum::ZERO; lengths_m.len()],
+            };
+            for (index, phase) in self.phases.iter().map(StreamedPhase::phase).enumerate() {
+                let once = rays.sunlit(layer, |layer| layer.scattering_with(phase), k);
+                let once = per_opacity(once);
+                let each = fog.layers.iter().zip(&fog.mean_weights);
+                let mean = each.fold(Spectrum::<N>::ZERO, |sum, (layer, weight)| {
+                    sum.mul_acc(layer.scattering_with(phase), *weight)
+                });
+                for ((parts, once), again) in all.iter_mut().zip(once).zip(&again) {
+                    parts.streams[index][k] = once.mul_acc(mean, *again);
+                }
+            }
+        }
+        Some(all)
     }
 
-    /// Light of the sun that the fog scatters towards the eye at density 1, by stream, at a cosine of the angle to the sun, 1/m times
-    /// irradiance. The sum of its products with [`FogParts::streams`] is not negative, but shares can be.
-    pub fn sun_streams(&self, cos_sun: f64) -> [Spectrum<N>; STREAMS] {
-        match &self.table {
-            Some(Table { sun: Some(sun), .. }) => self.fog.layers[0]
-                .streams_towards_eye(cos_sun)
+    /// Number of different phase functions in the fog.
+    pub fn phase_count(&self) -> usize {
+        self.phases.len()
+    }
+
+    /// Sunlight times a phase function of the fog, by its index among the distinct ones, at a cosine of the angle to the sun, by stream. The
+    /// sum of the products with [`FogParts::streams`] is not negative, but shares can be.
+    pub fn sun_streams(&self, phase: usize, cos_sun: f64) -> [Spectrum<N>; STREAMS] {
+        match (self.sun(), self.phases.get(phase)) {
+            (Some(sun), Some(phase)) => phase
+                .towards_eye(cos_sun)
                 .map(|stream| stream * sun.irradiance),
             _ => [Spectrum::ZERO; STREAMS],
         }
+    }
+
+    /// The sun above the horizon.
+    fn sun(&self) -> Option<&DirectionalLight<Spectrum<N>>> {
+        let sun = self.fog.lighting.sun.as_ref();
+        sun.filter(|sun| sun.direction.y > 0.0)
     }
 
     /// Values along a ray at some distances, of which one may be that of the ground.
@@ -320,21 +364,54 @@ impl<const N: usize> TableLanes<N> {
         lengths_m: &[f64],
         ground: usize,
     ) -> Vec<Node<N>> {
-        let rays = Rays {
-            fog: &self.fog,
-            field,
-            ray: *ray,
-            lengths_m,
-            ground,
+        let rays = Rays::new(&self.fog, field, ray, lengths_m, ground);
+        let per_opacity = self.per_opacity(0, ray, lengths_m);
+        let mut nodes = vec![*Node::ZERO; lengths_m.len()];
+        let has_sun = self.sun().is_some();
+        for m in 0..if has_sun { DEGREES } else { 1 } {
+            for (node, light) in nodes.iter_mut().zip(per_opacity(rays.diffuse(0, m))) {
+                for (lane, modes) in node.modes.iter_mut().enumerate() {
+                    modes.0[m] = light[lane];
+                }
+            }
+        }
+        for k in 0..if has_sun { STREAMS } else { 0 } {
+            let light = rays.sunlit(0, |_| Spectrum::ONE, k);
+            for (node, light) in nodes.iter_mut().zip(per_opacity(light)) {
+                for (lane, sunlit) in node.sunlit.iter_mut().enumerate() {
+                    sunlit.0[k] = light[lane].max(DARK.exp()).ln();
+                }
+            }
+        }
+        let mean = self.fog.mean_weights[0];
+        for k in 0..if has_sun { KEPT } else { 0 } {
+            for (node, light) in nodes
+                .iter_mut()
+                .zip(per_opacity(rays.scattered_again(0, k)))
+            {
+                for (lane, sunlit) in node.sunlit.iter_mut().enumerate() {
+                    sunlit.0[STREAMS + k] = light[lane] * mean[lane];
+                }
+            }
+        }
+        nodes
+    }
+
+    /// Divides light up to distances along a ray by the opacity of a layer alone up to there.
+    fn per_opacity(
+        &self,
+        layer: usize,
+        ray: &RaySegment,
+        lengths_m: &[f64],
+    ) -> impl Fn(Vec<Spectrum<N>>) -> Vec<Spectrum<N>> + use<N> {
+        let layer = &self.fog.layers[layer];
+        let opacity = |&length_m: &f64| {
+            let column_m = layer.density.column_along_m(&ray.part(0.0, length_m));
+            let depth = layer.extinction_per_m * column_m.min(OPAQUE) as f32;
+            depth * depth.mean_transmittance()
         };
-        let opacities: Vec<Spectrum<N>> = lengths_m
-            .iter()
-            .map(|&length_m| {
-                let depth = self.fog.optical_depth(&ray.part(0.0, length_m));
-                depth * depth.mean_transmittance()
-            })
-            .collect();
-        let per_opacity = |light: Vec<Spectrum<N>>| -> Vec<Spectrum<N>> {
+        let opacities: Vec<Spectrum<N>> = lengths_m.iter().map(opacity).collect();
+        move |light| {
             let each = light.into_iter().zip(&opacities);
             each.map(|(light, opacity)| {
                 Spectrum::from_fn(|lane| match opacity[lane] > 0.0 {
@@ -343,31 +420,7 @@ impl<const N: usize> TableLanes<N> {
                 })
             })
             .collect()
-        };
-        let mut nodes = vec![*Node::ZERO; lengths_m.len()];
-        let has_sun = self.table.as_ref().is_some_and(|table| table.sun.is_some());
-        for m in 0..if has_sun { DEGREES } else { 1 } {
-            for (node, light) in nodes.iter_mut().zip(per_opacity(rays.diffuse(m))) {
-                for (lane, modes) in node.modes.iter_mut().enumerate() {
-                    modes.0[m] = light[lane];
-                }
-            }
         }
-        for k in 0..if has_sun { STREAMS } else { 0 } {
-            for (node, light) in nodes.iter_mut().zip(per_opacity(rays.sunlit(k))) {
-                for (lane, sunlit) in node.sunlit.iter_mut().enumerate() {
-                    sunlit.0[k] = light[lane].max(DARK.exp()).ln();
-                }
-            }
-        }
-        for k in 0..if has_sun { KEPT } else { 0 } {
-            for (node, light) in nodes.iter_mut().zip(per_opacity(rays.scattered_again(k))) {
-                for (lane, sunlit) in node.sunlit.iter_mut().enumerate() {
-                    sunlit.0[STREAMS + k] = light[lane];
-                }
-            }
-        }
-        nodes
     }
 
     /// Distances of the nodes, m.
@@ -610,13 +663,13 @@ struct Node<const N: usize> {
     sunlit: [Values; N],
 }
 
-/// Path radiance per unit of opacity along rays of one elevation to one distance, in parts.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Path radiance that a layer adds along rays of one elevation to one distance, per unit of its own opacity, in parts.
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FogParts<const N: usize> {
     /// Light scattered several times: the factor of `cos(m azimuth)`, divided by the `m`-th power of the cosine of the elevation.
     pub modes: [Spectrum<N>; DEGREES],
-    /// Sunlight scattered once, by stream, per unit of light scattered towards the eye.
-    pub streams: [Spectrum<N>; STREAMS],
+    /// Sunlight scattered once, by phase function and by stream, per unit of [`TableLanes::sun_streams`].
+    pub streams: Vec<[Spectrum<N>; STREAMS]>,
 }
 
 /// Values that are interpolated as one vector.
@@ -641,12 +694,6 @@ impl Values {
         for k in 0..DEGREES {
             self.0[k] += near * from.0[k] + far * to.0[k];
         }
-    }
-
-    /// Singly scattered sunlight of a stream, with what peaks scatter of it again.
-    fn stream(&self, k: usize) -> f32 {
-        let again = if k < KEPT { self.0[STREAMS + k] } else { 0.0 };
-        self.0[k].exp() + again
     }
 
     /// Sum of products, added in pairs for vector instructions.
@@ -703,99 +750,6 @@ impl Spacing {
 #[inline]
 fn mean<const N: usize>(lanes: Spectrum<N>) -> f32 {
     lanes.0.iter().sum::<f32>() / N as f32
-}
-
-/// Rays of one elevation to each distance of the table.
-struct Rays<'a, const N: usize> {
-    fog: &'a FogLanes<N>,
-    field: &'a Field<N>,
-    ray: RaySegment,
-    lengths_m: &'a [f64],
-    /// Index of the distance to the ground; `usize::MAX` for rising rays.
-    ground: usize,
-}
-
-impl<const N: usize> Rays<'_, N> {
-    /// Path radiance of multiple scattering for one azimuth mode, divided by the power of the cosine of the elevation: the terms
-    /// of [`FogLanes::path`].
-    fn diffuse(&self, mode: usize) -> Vec<Spectrum<N>> {
-        let field = self.field;
-        let weights = multiple::of_mode(self.ray.sin_elevation, mode);
-        let scattered = |part: &RaySegment| field.scattered_of_mode(part, &weights, mode);
-        let (sky, ground) = match mode {
-            0 => (self.fog.lighting.ambient, field.ground_radiance),
-            _ => (Spectrum::ZERO, Spectrum::ZERO),
-        };
-        self.to_each(MergedLayer::seen_extinction, scattered, sky, ground)
-    }
-
-    /// Path radiance of single scattering in a stream per unit of irradiance and of scattering towards the eye.
-    fn sunlit(&self, stream: usize) -> Vec<Spectrum<N>> {
-        let dark = Spectrum::ZERO;
-        let extinctions = |s: &MergedLayer<N>| s.stream_extinctions().map(|all| [all[stream]]);
-        let single = self.fog.single_scattering(extinctions, |_| [Spectrum::ONE]);
-        let scattered = |part: &RaySegment| single.along(part, &|_| Spectrum::ZERO).0[0];
-        self.to_each(|s| extinctions(s)[0][0], scattered, dark, dark)
-    }
-
-    /// Path radiance of what peaks scatter again of a stream, in the same unit.
-    fn scattered_again(&self, stream: usize) -> Vec<Spectrum<N>> {
-        let dark = Spectrum::ZERO;
-        let kind = DEGREES + stream;
-        let scattered = |part: &RaySegment| self.field.scattered_by_peaks(part, kind);
-        let light = self.to_each(MergedLayer::seen_extinction, scattered, dark, dark);
-        let scattering = self.fog.layers[0].scattering_per_m;
-        let unit = scattering.max_scalar(f32::MIN_POSITIVE);
-        light.into_iter().map(|light| light / unit).collect()
-    }
-
-    /// Path radiance up to each distance, from light scattered in segments and light from the sky or the ground, attenuated by an
-    /// extinction: radiance at the eye minus the unscattered radiance from the far end.
-    fn to_each(
-        &self,
-        extinction: impl Fn(&MergedLayer<N>) -> Spectrum<N>,
-        scattered: impl Fn(&RaySegment) -> Spectrum<N>,
-        sky: Spectrum<N>,
-        ground: Spectrum<N>,
-    ) -> Vec<Spectrum<N>> {
-        let starts = std::iter::once(&0.0).chain(self.lengths_m);
-        let parts: Vec<RaySegment> = starts
-            .zip(self.lengths_m)
-            .map(|(&from, &to)| self.ray.part(from, to.max(from)))
-            .collect();
-        let parts: Vec<(Spectrum<N>, Spectrum<N>)> = parts
-            .iter()
-            .map(|part| match part.length_m > 0.0 {
-                true => (scattered(part), self.fog.depth_of(part, &extinction)),
-                false => (Spectrum::ZERO, Spectrum::ZERO),
-            })
-            .collect();
-        // Radiance at each distance from beyond it.
-        let mut arriving = vec![
-            if self.ray.sin_elevation < 0.0 {
-                ground
-            } else {
-                sky
-            };
-            parts.len()
-        ];
-        for k in (0..parts.len() - 1).rev().filter(|&k| k < self.ground) {
-            let (light, depth) = parts[k + 1];
-            arriving[k] = light + depth.exp_neg() * arriving[k + 1];
-        }
-        let mut near = Spectrum::ZERO;
-        let mut before = Spectrum::ZERO;
-        let each = parts.iter().enumerate().map(|(k, (light, depth))| {
-            near += before.exp_neg() * *light;
-            before += *depth;
-            let whole = self.ray.part(0.0, self.lengths_m[k]);
-            let rest = self.fog.depth_of(&whole, &|s| {
-                (s.extinction_per_m - extinction(s)).max_scalar(0.0)
-            });
-            near + before.exp_neg() * rest * rest.mean_transmittance() * arriving[k]
-        });
-        each.collect()
-    }
 }
 
 /// Distance beyond `from` at which an increasing function reaches `target`, by false position (Illinois algorithm), to 1e-6 of

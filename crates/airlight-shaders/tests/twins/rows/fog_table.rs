@@ -13,14 +13,18 @@ use std::f64::consts::FRAC_PI_2;
 
 flat_struct! {
     twins::fog_table::FogTableView {
-        sun, below_per_sine, depth_below, above_per_sine, depth_above, diffuse_scale, sunlit_scale
+        sun, below_per_sine, depth_below, above_per_sine, depth_above, diffuse_scale, sunlit_scale, layer, layer_count, phase_count
     }
 }
 
 /// Numbers of a view.
-const VIEW: usize = 13;
+const VIEW: usize = 16;
 
-/// A view from inside or above fog, thin or opaque.
+/// Layers and phase functions of the textures of the tests.
+const LAYERS: f32 = 2.0;
+const PHASES: f32 = 2.0;
+
+/// A view of a layer from inside or above fog, thin or opaque.
 fn view(r: &mut Random) -> Vec<f32> {
     let depth = |r: &mut Random| {
         let grey = r.or(&[1e25], |r| r.decades(1e-4, 30.0));
@@ -32,6 +36,7 @@ fn view(r: &mut Random) -> Vec<f32> {
     all.push(r.decades(20.0, 1e6));
     all.extend(depth(r));
     all.extend([r.between(0.5, 2.0), r.between(0.5, 2.0)]);
+    all.extend([r.one_of(&[0.0, 1.0]), LAYERS, PHASES]);
     all
 }
 
@@ -71,10 +76,18 @@ fn place(view: &[f64], sine: f64, opacities: &[f64], transmittances: &[f64]) -> 
     1.0 - (left / whole).clamp(0.0, 1.0).powf(0.25)
 }
 
-fn stream_light(place: &[f64], stream: f64) -> Vec<f64> {
-    let layer = (stream + 0.5) / 3.0;
-    let logarithms = sample("stream_table_3d", [place[0], place[1], layer]);
-    let phase = sample("stream_phase_table_2d", [place[2], layer, 0.5]);
+/// Texture coordinate in the stacked tables of a view.
+fn stacked(view: &[f64], coordinate: f64) -> f64 {
+    (view[13] + coordinate) / view[14]
+}
+
+fn stream_light(view: &[f64], place: &[f64], phase: f64, stream: f64) -> Vec<f64> {
+    let slice = (3.0 * phase + stream + 0.5) / (3.0 * view[15]);
+    let logarithms = sample(
+        "stream_table_3d",
+        [place[0], place[1], stacked(view, slice)],
+    );
+    let phase = sample("stream_phase_table_2d", [place[2], slice, 0.5]);
     (0..3).map(|c| logarithms[c].exp() * phase[c]).collect()
 }
 
@@ -85,9 +98,12 @@ fn fog(x: &[f64]) -> Vec<f64> {
     let v = row(x, direction);
     let transmittances: Vec<f64> = depth.iter().map(|d| (-d).exp()).collect();
     let w = texel(place(x, direction[1], &opacities, &transmittances), 32.0);
-    let diffuse = sample("diffuse_table_3d", [u, v, w]);
+    let diffuse = sample("diffuse_table_3d", [u, v, stacked(x, w)]);
     let angle = texel(place_of_phase(one_minus_cos(direction, x)), 1024.0);
-    let streams = [0.0, 1.0, 2.0].map(|k| stream_light(&[w, v, angle], k));
+    let streams = (0..PHASES as usize).flat_map(|phase| {
+        [0.0, 1.0, 2.0].map(|stream| stream_light(x, &[w, v, angle], phase as f64, stream))
+    });
+    let streams: Vec<Vec<f64>> = streams.collect();
     let radiance = (0..3).map(|c| {
         let sunlit: f64 = streams.iter().map(|light| light[c]).sum();
         opacities[c] * (x[11] * diffuse[c] + x[12] * sunlit)
@@ -98,9 +114,9 @@ fn fog(x: &[f64]) -> Vec<f64> {
 /// Twins with the textures of the tests.
 fn with_textures() -> [(&'static str, FlatFunction); 2] {
     use twins::fog_table::{fog_stream_light, tabulated_fog};
-    let stream = |place: Vec3, stream: f32| {
-        let [streams, phase] = ["stream_table_3d", "stream_phase_table_2d"].map(textures::named);
-        fog_stream_light(streams, phase, LinearSampler, place, stream)
+    let stream = |view: FogTableView, place: Vec3, phase: f32, stream: f32| {
+        let [streams, phases] = ["stream_table_3d", "stream_phase_table_2d"].map(textures::named);
+        fog_stream_light(view, streams, phases, LinearSampler, place, phase, stream)
     };
     let fog = |view: FogTableView, direction: Vec3, depth: Vec3| {
         let [diffuse, streams, phase] = [
@@ -146,6 +162,11 @@ pub fn fog_table() -> Vec<Row> {
             all.extend(r.direction());
             all
         } => |x| vec![row(x, &x[VIEW..])];
+        fog_stacked_coordinate: |r| {
+            let mut all = view(r);
+            all.push(r.unit());
+            all
+        } => |x| vec![stacked(x, x[VIEW])];
         fog_opacity: |r| r.rgb(Random::depth).to_vec()
             => |x| x.iter().map(|&depth| opacity(depth)).collect();
         fog_distance_place: |r| {
@@ -175,11 +196,13 @@ pub fn fog_table() -> Vec<Row> {
                 name,
                 twin,
                 inputs: |r| {
-                    let mut all = r.rgb(Random::unit).to_vec();
+                    let mut all = view(r);
+                    all.extend(r.rgb(Random::unit));
+                    all.push(r.one_of(&[0.0, 1.0]));
                     all.push(r.one_of(&[0.0, 1.0, 2.0]));
                     all
                 },
-                exact: Box::new(|x| stream_light(x, x[3])),
+                exact: Box::new(|x| stream_light(x, &x[VIEW..], x[VIEW + 3], x[VIEW + 4])),
             },
         });
     }

@@ -143,6 +143,11 @@ impl<const N: usize> Field<N> {
         Ok(field)
     }
 
+    /// Heights between which the source function is interpolated, in increasing order, m.
+    pub fn heights_m(&self) -> &[f64] {
+        &self.heights_m
+    }
+
     fn copy_lane(&mut self, from: usize, to: usize) {
         for moments in self.sources.iter_mut().flatten().flatten() {
             moments[to] = moments[from];

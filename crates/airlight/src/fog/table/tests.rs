@@ -250,53 +250,100 @@ fn tabulated_fog_without_absorption_is_invisible_in_uniform_light() {
     }
 }
 
+/// Fogs of one, two and three profiles, of which the eye is in some, between or above them.
+fn fogs_and_eyes() -> Vec<(Vec<RgbLayer>, f64)> {
+    let exponential = |scale_height_m: f64, extinction: f32, radius_um: f64| {
+        let profile = DensityProfile::exponential(scale_height_m);
+        layer(profile, extinction, droplets::phase(radius_um))
+    };
+    let slab = |bottom_m: f64, top_m: f64, extinction: f32, phase: PhaseFunction| {
+        layer(DensityProfile::Layer { bottom_m, top_m }, extinction, phase)
+    };
+    let wide = PhaseFunction::henyey_greenstein(0.7).unwrap();
+    let mist = exponential(3.0, 0.03, 20.0);
+    let above = slab(30.0, 60.0, 0.02, droplets::phase(10.0));
+    let haze = slab(0.0, 400.0, 0.001, wide);
+    let clamped = layer(CLAMPED, 0.05, droplets::phase(20.0));
+    vec![
+        (vec![exponential(40.0, 0.02, 20.0)], 12.0),
+        (vec![mist.clone(), above.clone()], 2.0),
+        (vec![mist.clone(), above.clone()], 22.0),
+        (vec![mist.clone(), above], 80.0),
+        (vec![mist, clamped, haze], 12.0),
+    ]
+}
+
 #[test]
 fn parts_sum_to_the_path_radiance() {
-    let droplets = droplets::phase(20.0);
-    let profile = DensityProfile::Exponential {
-        reference_height_m: 0.0,
-        scale_height_m: 40.0,
-    };
-    for sun in [Some(25.0), None] {
-        let fog = fog(&[layer(profile.clone(), 0.02, droplets.clone())], sun);
-        let table = TableLanes::new(fog.clone(), 12.0);
+    for ((layers, eye_m), sun) in fogs_and_eyes()
+        .into_iter()
+        .flat_map(|case| [Some(25.0), None].map(|sun| (case.clone(), sun)))
+    {
+        let fog = fog(&layers, sun);
+        let table = TableLanes::new(fog.clone(), eye_m);
+        let mut worst = 0.0f32;
         for elevation in [-30.0, -2.0, 0.01, 3.0, 80.0] {
             let sine = f64::to_radians(elevation).sin();
-            let far_m = if sine < 0.0 { 12.0 / -sine } else { 5000.0 };
+            let far_m = if sine < 0.0 { eye_m / -sine } else { 5000.0 };
             let distances_m = [0.001, 0.2, 1.0].map(|part| part * far_m);
-            let parts = table.parts(sine, &distances_m).unwrap();
+            let parts: Vec<Vec<_>> = (0..layers.len())
+                .map(|layer| table.parts(layer, sine, &distances_m).unwrap())
+                .collect();
             for azimuth in [150.0, 152.0, 220.0, 330.0] {
                 let view = axes::direction(azimuth, elevation);
-                let cos_sun = table.table.as_ref().unwrap().sun.as_ref();
-                let streams = table.sun_streams(cos_sun.map_or(0.0, |s| view.dot(s.direction)));
-                for (parts, distance_m) in parts.iter().zip(distances_m) {
-                    let path = fog.path(12.0, view, distance_m);
-                    let azimuth_rad = f64::to_radians(azimuth - 150.0);
-                    for lane in 0..3 {
-                        let mut sum = 0.0;
-                        for (m, mode) in parts.modes.iter().enumerate() {
+                let cos_sun = fog.cos_sun(view);
+                let azimuth_rad = f64::to_radians(azimuth - 150.0);
+                for (k, distance_m) in distances_m.into_iter().enumerate() {
+                    let mut got = Spectrum::<3>::ZERO;
+                    for (parts, layer) in parts.iter().zip(&fog.layers) {
+                        let mut sum = Spectrum::ZERO;
+                        for (m, mode) in parts[k].modes.iter().enumerate() {
                             let factor = (1.0 - sine * sine).sqrt().powi(m as i32)
                                 * (m as f64 * azimuth_rad).cos();
-                            sum += mode[lane] * factor as f32;
+                            sum = sum.scale_acc(*mode, factor as f32);
                         }
-                        for (part, stream) in parts.streams.iter().zip(&streams) {
-                            sum += part[lane] * stream[lane];
+                        for (phase, once) in parts[k].streams.iter().enumerate() {
+                            let streams = table.sun_streams(phase, cos_sun);
+                            for (part, stream) in once.iter().zip(streams) {
+                                sum = sum.mul_acc(*part, stream);
+                            }
                         }
-                        let depth = fog.optical_depth(&RaySegment::flat(12.0, sine, distance_m));
-                        let got = sum * -(-depth[lane]).exp_m1();
-                        let right = path.path_radiance[lane];
+                        let ray = RaySegment::flat(eye_m, sine, distance_m);
+                        let column_m = layer.density.column_along_m(&ray) as f32;
+                        let depth = layer.extinction_per_m * column_m;
+                        got += depth * depth.mean_transmittance() * sum;
+                    }
+                    let right = fog.path(eye_m, view, distance_m).path_radiance;
+                    for lane in 0..3 {
+                        let error = (got[lane] / right[lane] - 1.0).abs();
+                        worst = worst.max(error);
                         assert!(
-                            (got / right - 1.0).abs() < 1e-3,
-                            "{sun:?} {elevation} {azimuth} {distance_m}: {got} {right}"
+                            error < 1e-3,
+                            "{layers:?} {sun:?} {elevation} {azimuth} {distance_m}: {got:?} {right:?}"
                         );
                     }
                 }
             }
         }
+        println!(
+            "{} layers, eye {eye_m} m, sun {sun:?}: {worst}",
+            layers.len()
+        );
     }
-    // Fog that is not tabulated has none.
-    let slabs = [10.0, 30.0].map(DensityProfile::slab);
-    let layers = slabs.map(|slab| layer(slab, 0.01, PhaseFunction::Isotropic));
-    let table = TableLanes::new(solved(&layers, Ground::FLAT, lighting(Some(30.0))), 2.0);
-    assert!(table.parts(0.1, &[1.0]).is_none());
+}
+
+#[test]
+fn fog_without_an_upper_end_has_no_parts() {
+    for uniform in [DensityProfile::Uniform, DensityProfile::slab(10.0)] {
+        let layers = [uniform.clone(), DensityProfile::slab(30.0)];
+        let layers = layers.map(|density| layer(density, 0.01, PhaseFunction::Isotropic));
+        let table = TableLanes::new(solved(&layers, Ground::FLAT, lighting(Some(30.0))), 2.0);
+        for (layer, is_none) in [
+            (0, uniform.is_uniform()),
+            (1, uniform.is_uniform()),
+            (2, true),
+        ] {
+            assert_eq!(table.parts(layer, 0.1, &[1.0]).is_none(), is_none);
+        }
+    }
 }
