@@ -417,7 +417,7 @@ pub fn checks(suite: Suite, control: Control<'_>) -> Result<Vec<Check>, FramesEr
 }
 
 /// Paths along each direction of the suite `gpu-monte-carlo`.
-pub const PATHS: u64 = 65_536;
+pub const PATHS: u64 = 16_384;
 /// Directions of each of its cases: as many for each sun as [`DIRECTIONS`].
 pub const PATH_DIRECTIONS: usize = DIRECTIONS / (AIRS.len() * HEIGHTS_M.len());
 
@@ -433,7 +433,7 @@ pub fn monte_carlo_checks(control: Control<'_>) -> Result<Vec<Check>, FramesErro
         what: format!("{}, {}", Quantity::Sky.name(), group.name()),
         against: "airlight-gpu against Airlight's Monte Carlo".into(),
         unit: Unit::Percent,
-        limit: None,
+        limit: Some(if group.day { 2.0 } else { 5.0 }),
         limit_of_rms: None,
         rows: rows
             .iter()

@@ -30,6 +30,16 @@ fn case(air: &'static str, sun_deg: f64, height_m: f64) -> Case {
 fn a_frame_is_truer_than_published_real_time_models() {
     let device = Headless::new().unwrap();
     let rows = against_solver(&device, &[case("hazy", 10.0, 2.0)], 64, Control::default()).unwrap();
+    for (quantity, rms, each) in [
+        (Quantity::Sky, 0.2, 1.0),
+        (Quantity::SkyColour, 0.1, 0.5),
+        (Quantity::Walls, 0.3, 1.0),
+        (Quantity::WallColour, 0.3, 1.0),
+    ] {
+        let ours = errors(&rows, Renderer::AirlightGpu, quantity);
+        println!("{}: {ours:.2?}", quantity.name());
+        assert!(ours.0 < rms && ours.1 < each, "{}", quantity.name());
+    }
     for quantity in [Quantity::Sky, Quantity::SkyColour] {
         let all = Renderer::ALL.map(|renderer| errors(&rows, renderer, quantity));
         println!("{}: {all:.2?}", quantity.name());
