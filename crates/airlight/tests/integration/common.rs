@@ -1,21 +1,58 @@
 //! Skies and fog that several tests look at.
 
-use airlight::atmosphere::{Constituent, ConstituentKind, DensityProfile, presets};
+use airlight::atmosphere::{Atmosphere, Constituent, ConstituentKind, DensityProfile, presets};
 use airlight::fog::{DirectionalLight, Fog, FogLighting, FogScattering, Ground};
 use airlight::optics::PhaseFunction;
-use airlight::sky::{LineOfSight, Sky, SkySettings, SunCoverage, View};
+use airlight::sky::{LineOfSight, Sky, SkyError, SkySettings, SunCoverage, View};
 use airlight::spectrum::{SpectralCurve, WavelengthGrid};
 use airlight::transfer::RgbPathOptics;
 use glam::{DQuat, DVec3};
 
 /// The sky of a preset in red, green and blue.
 pub fn sky(preset: &str, suns: SunCoverage) -> Sky {
+    sky_of(&presets::preset(preset).unwrap(), suns)
+}
+
+/// The sky of an air in red, green and blue.
+pub fn sky_of(air: &Atmosphere, suns: SunCoverage) -> Sky {
     let settings = SkySettings {
         suns,
         ..Default::default()
     };
-    let air = presets::preset(preset).unwrap();
-    Sky::prepare(&air, &WavelengthGrid::rgb(), &settings).unwrap()
+    Sky::prepare(air, &WavelengthGrid::rgb(), &settings).unwrap()
+}
+
+/// Height of the top of a [`Slab`], m.
+pub const SLAB_TOP_M: f64 = 1000.0;
+
+/// A uniform layer of the Earth's air, 1 km high, under a sun of unit irradiance.
+#[derive(Clone, Copy, Debug)]
+pub struct Slab {
+    pub depth: f64,
+    pub single_scattering_albedo: f64,
+    pub asymmetry: f64,
+    pub ground_albedo: f64,
+}
+
+impl Slab {
+    pub fn sky(&self, sun_elevation_deg: f64, settings: SkySettings) -> Result<Sky, SkyError> {
+        let mut air = Atmosphere::from_toml("base = \"none\"").unwrap();
+        air.planet.top_altitude_m = SLAB_TOP_M;
+        air.planet.ground_albedo = SpectralCurve::Constant(self.ground_albedo);
+        air.solar_irradiance = SpectralCurve::Constant(1.0);
+        air.constituents = vec![grey_layer(
+            DensityProfile::slab(2.0 * SLAB_TOP_M),
+            self.depth / SLAB_TOP_M,
+            self.single_scattering_albedo,
+            PhaseFunction::HenyeyGreenstein { g: self.asymmetry },
+        )];
+        let settings = SkySettings {
+            suns: SunCoverage::near(sun_elevation_deg, 0.0),
+            ..settings
+        };
+        let grid = WavelengthGrid::from_wavelengths_nm(vec![550.0]).unwrap();
+        Sky::prepare(&air, &grid, &settings)
+    }
 }
 
 /// Settings for scalar light, as paths of light without polarisation have it.

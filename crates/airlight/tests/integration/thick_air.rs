@@ -1,44 +1,11 @@
 //! The sky of optically thick air: slabs against discrete ordinates, conservation of energy, and refusal of what did not
 //! converge.
 
-use crate::common::{grey_layer, numbers};
-use airlight::atmosphere::{Atmosphere, ConstituentKind, DensityProfile, Interpolation, presets};
+use crate::common::{SLAB_TOP_M, Slab, numbers};
+use airlight::atmosphere::{ConstituentKind, DensityProfile, Interpolation, presets};
 use airlight::axes::direction;
-use airlight::optics::PhaseFunction;
-use airlight::sky::{Sky, SkyError, SkySettings, SunCoverage, TableChannels};
-use airlight::spectrum::{SpectralCurve, WavelengthGrid};
-use glam::DVec3;
-
-const TOP_M: f64 = 1000.0;
-
-/// A uniform layer of the Earth's air, 1 km high, under a sun of unit irradiance.
-struct Slab {
-    depth: f64,
-    single_scattering_albedo: f64,
-    asymmetry: f64,
-    ground_albedo: f64,
-}
-
-impl Slab {
-    fn sky(&self, sun_elevation_deg: f64, settings: SkySettings) -> Result<Sky, SkyError> {
-        let mut air = Atmosphere::from_toml("base = \"none\"").unwrap();
-        air.planet.top_altitude_m = TOP_M;
-        air.planet.ground_albedo = SpectralCurve::Constant(self.ground_albedo);
-        air.solar_irradiance = SpectralCurve::Constant(1.0);
-        air.constituents = vec![grey_layer(
-            DensityProfile::slab(2.0 * TOP_M),
-            self.depth / TOP_M,
-            self.single_scattering_albedo,
-            PhaseFunction::HenyeyGreenstein { g: self.asymmetry },
-        )];
-        let settings = SkySettings {
-            suns: SunCoverage::near(sun_elevation_deg, 0.0),
-            ..settings
-        };
-        let grid = WavelengthGrid::from_wavelengths_nm(vec![550.0]).unwrap();
-        Sky::prepare(&air, &grid, &settings)
-    }
-}
+use airlight::sky::{Sky, SkyError, SkySettings, SunCoverage};
+use airlight::spectrum::WavelengthGrid;
 
 #[test]
 fn skies_of_thick_slabs_are_those_of_discrete_ordinates() {
@@ -71,7 +38,7 @@ fn skies_of_thick_slabs_are_those_of_discrete_ordinates() {
             ));
         }
         let sky = &last.as_ref().unwrap().1;
-        let altitude_m = TOP_M * (1.0 - above);
+        let altitude_m = SLAB_TOP_M * (1.0 - above);
         let view = sky.view(altitude_m, direction(0.0, sun_elevation));
         let line = view.along(direction(azimuth, 90.0 - zenith), None);
         let got = f64::from(line.path_radiance()[0]);
@@ -93,30 +60,53 @@ fn skies_of_thick_slabs_are_those_of_discrete_ordinates() {
     }
 }
 
+/// Light that leaves a slab without absorption upwards, and downwards into black ground, relative to the sunlight that arrives, minus 1.
+fn energy_error(depth: f64, asymmetry: f64, ground_albedo: f64, sun_elevation_deg: f64) -> f64 {
+    let slab = Slab {
+        depth,
+        single_scattering_albedo: 1.0,
+        asymmetry,
+        ground_albedo,
+    };
+    let sky = slab.sky(sun_elevation_deg, SkySettings::default()).unwrap();
+    let sun = direction(0.0, sun_elevation_deg);
+    let [above, ground] = [SLAB_TOP_M, 0.0].map(|altitude_m| sky.view(altitude_m, sun));
+    let direct = f64::from(ground.sun_irradiance()[0]) * sun.y;
+    let received = f64::from(ground.downwelling_irradiance()[0]) + direct;
+    let leaving = f64::from(above.upwelling_irradiance()[0]) + (1.0 - ground_albedo) * received;
+    leaving / sun.y - 1.0
+}
+
+/// Asserts that at most 0.3 % of the light that arrives is lost or gained, however often it is scattered: also between a slab and
+/// ground that reflects all light. (Under a sun at 8 degrees the curvature of the Earth alone changes the flux by more.)
+fn assert_energy_is_conserved(ground_albedo: f64, sun_elevation_deg: f64, depths: &[f64]) {
+    for &depth in depths {
+        for asymmetry in [0.0, 0.7, 0.85] {
+            let error = 100.0 * energy_error(depth, asymmetry, ground_albedo, sun_elevation_deg);
+            let case = format!(
+                "depth {depth}, asymmetry {asymmetry}, ground {ground_albedo}, sun {sun_elevation_deg}"
+            );
+            println!("{case}: {error:+.3} %");
+            assert!(error.abs() < 0.3, "{case}: {error:.3} %");
+        }
+    }
+}
+
+const DEPTHS: [f64; 6] = [0.1, 1.0, 5.0, 20.0, 50.0, 100.0];
+
 #[test]
 fn air_that_does_not_absorb_conserves_energy() {
-    for (depth, sun_elevation) in [(1.0, 60.0), (5.0, 60.0), (5.0, 20.0), (20.0, 60.0)] {
-        let slab = Slab {
-            depth,
-            single_scattering_albedo: 1.0,
-            asymmetry: 0.7,
-            ground_albedo: 0.0,
-        };
-        let sky = slab.sky(sun_elevation, SkySettings::default()).unwrap();
-        let sun = direction(0.0, sun_elevation);
-        let [above, ground] = [TOP_M, 0.0].map(|altitude| sky.view(altitude, sun));
-        let irradiance = |view: &airlight::sky::View, normal: DVec3| {
-            f64::from(view.table(TableChannels::Spectral).irradiance(normal)[0])
-        };
-        let arriving = sun.y;
-        let direct = f64::from(ground.sun_irradiance()[0]) * sun.y;
-        let leaving = irradiance(&above, -DVec3::Y) + irradiance(&ground, DVec3::Y) + direct;
-        let error = leaving / arriving - 1.0;
-        assert!(
-            error.abs() < 0.005,
-            "{depth} {sun_elevation}: {:.2} %",
-            100.0 * error
-        );
+    assert_energy_is_conserved(0.0, 60.0, &DEPTHS);
+    assert_energy_is_conserved(1.0, 20.0, &[1.0, 100.0]);
+}
+
+#[test]
+#[ignore = "takes half a minute"]
+fn air_that_does_not_absorb_conserves_energy_over_any_ground() {
+    for ground_albedo in [0.0, 0.5, 1.0] {
+        for sun_elevation_deg in [60.0, 20.0] {
+            assert_energy_is_conserved(ground_albedo, sun_elevation_deg, &DEPTHS);
+        }
     }
 }
 

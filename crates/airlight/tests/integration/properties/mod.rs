@@ -4,7 +4,7 @@
 //! Every input follows from the seed of its case. A failure prints the seed, the property and the input;
 //! `AIRLIGHT_SEED=SEED cargo test -p airlight properties::MODEL` runs that case alone.
 
-mod draw;
+pub mod draw;
 mod fog;
 mod lights;
 mod sky;
