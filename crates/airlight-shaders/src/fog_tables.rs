@@ -58,7 +58,8 @@ const DISTANCES: usize = FOG_DISTANCES as usize;
 const ANGLES: usize = PHASE_ANGLES as usize;
 
 impl FogTables {
-    /// The tables of a fog for an eye at a height, m, not below the ground. Takes about a tenth of a second for each density profile.
+    /// The tables of a fog for an eye at a height, m, not below the ground. Takes about a tenth of a second for a single density profile
+    /// and a second for four.
     ///
     /// # Errors
     /// [`FogTablesError`] for fog without layers, multiple scattering or an upper end, or over round ground.
