@@ -327,9 +327,10 @@ impl<const N: usize> FogLanes<N> {
     ///
     /// Light scattered by the narrow part of the forward peak counts as unscattered: the radiance `I` from the edge of the fog is
     /// attenuated by a reduced extinction, and includes light that this part scatters into the ray. The path radiance of a segment
-    /// is `I` minus the light that arrives unscattered from its far end, `S = I(near) - T I(far)`. This composes exactly when a
-    /// segment is split, and is `(1 - T) I` in uniform light. It is summed from terms that do not cancel. Singly scattered sunlight
-    /// consists of streams ([`crate::transfer::residual`]), for each of which a part of it counts as unscattered.
+    /// is `I` minus the light that arrives unscattered from its far end, `S = I(near) - T I(far)`. This is `(1 - T) I` in uniform
+    /// light, and composes exactly when a segment is split, for one profile over flat ground; over round ground the whole ray has the
+    /// elevation of its start. It is summed from terms that do not cancel. Singly scattered sunlight consists of streams
+    /// ([`crate::transfer::residual`]), for each of which a part of it counts as unscattered.
     fn multiple_scattering(
         &self,
         field: &Field<N>,

@@ -116,10 +116,13 @@ pub fn single_scattering(draw: &mut Draw) -> Result<(), Failure> {
     Ok(())
 }
 
-/// All orders of scattering, by the solver and by its tables.
+/// All orders of scattering, by the solver and by its tables: closed forms along a ray for one profile over flat ground.
 pub fn multiple_scattering(draw: &mut Draw) -> Result<(), Failure> {
+    /// Optical depth of a ray beyond which densities are those of a profile far below any fog.
+    const DEEPEST: f32 = 1e6;
     let layers = draw.layers(1);
     let ground = draw.ground();
+    let exact = layers.len() == 1 && ground == Ground::FLAT;
     let lighting = lighting(draw);
     let fog = RgbFog::new(&layers, ground, &lighting, FogScattering::Multiple)
         .map_err(|e| e.to_string())?;
@@ -128,14 +131,29 @@ pub fn multiple_scattering(draw: &mut Draw) -> Result<(), Failure> {
     for _ in 0..RAYS {
         let direction = draw.direction();
         let length_m = draw.length_m();
+        let at = draw.unit() * length_m;
+        let cos_sun = lighting.sun.map_or(0.0, |sun| sun.direction.dot(direction));
         let checked = || {
             let irradiance = fog.ground_irradiance().unwrap_or_default();
             light("irradiance", &irradiance)?;
             optics(&table.path(direction, length_m)).map_err(|f| format!("table: {f}"))?;
-            optics(&fog.path(eye_m, direction, length_m))
+            let whole = fog.path(eye_m, direction, length_m);
+            optics(&whole)?;
+            let ray = RaySegment::new(eye_m, direction.y, length_m, ground.radius_m);
+            let parts = [ray.part(0.0, at), ray.part(at, length_m)];
+            let [near, far] = parts.map(|part| fog.path_along(&part, cos_sun));
+            optics(&near)?;
+            optics(&far)?;
+            let depth = fog.optical_depth(&ray).into_iter().fold(0.0, f32::max);
+            if exact && depth < DEEPEST {
+                let joined = near.then(far);
+                let (joined, whole) = (joined.path_radiance, whole.path_radiance);
+                equal("path radiance of parts", &joined, &whole, 1e-4, 1e-9)?;
+            }
+            Ok(())
         };
         checked().map_err(|failure: Failure| {
-            format!("{failure}\n    from {eye_m} along {direction}, {length_m} m, {layers:?}, {ground:?}, {lighting:?}")
+            format!("{failure}\n    from {eye_m} along {direction}, {length_m} m, split at {at}, {layers:?}, {ground:?}, {lighting:?}")
         })?;
     }
     Ok(())

@@ -120,7 +120,7 @@ pub fn view(draw: &mut Draw) -> Result<(), Failure> {
                 "transmittance back",
                 &back.transmittance,
                 &line.transmittance,
-                1e-3,
+                1e-5,
                 1e-6,
             )?;
             let near = view.along(direction, Some(part * length_m));
@@ -130,8 +130,17 @@ pub fn view(draw: &mut Draw) -> Result<(), Failure> {
                 "transmittance of parts",
                 &joined.transmittance,
                 &whole.transmittance,
-                1e-3,
+                1e-5,
                 1e-6,
+            )?;
+            // The field is interpolated between suns, which differ along the ray: of 1e3 rays, 999 are within 0.4 %; the worst, through
+            // a thin layer in twilight, are off by 2.7 %.
+            equal(
+                "path radiance of parts",
+                &joined.path_radiance,
+                &whole.path_radiance,
+                0.03,
+                1e-7,
             )
         };
         checked().map_err(|f: Failure| {
