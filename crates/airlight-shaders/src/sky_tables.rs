@@ -96,12 +96,14 @@ impl SkyTables {
             dense_azimuth: coordinates.dense_azimuth as f32,
             dense_width: coordinates.dense_width as f32,
         };
-        let sky = sky(split, &place);
+        let mut sky = sky(split, &place);
+        begin_at_kink(&mut sky.1, sky_size(), &place, SKY_ROWS);
         let scales = twin::SkyScales {
             smooth_light: scale(&sky.0),
             haze: scale(&sky.1),
         };
-        let aerial = aerial(split, &place, &sky_view);
+        let mut aerial = aerial(split, &place, &sky_view);
+        begin_at_kink(&mut aerial.haze, aerial_size(), &place, AERIAL_ROWS);
         let [radiance_weights, transmittance_weights, disc_weights] =
             rgb_weights(view, fit, space)?;
         Ok(Self {
@@ -339,6 +341,27 @@ fn aerial(split: &SplitView, eye: &Eye, view: &twin::SkyView) -> Aerial {
         smooth,
         haze,
         extinction: Texture::new([distances, rows, 1], extinction),
+    }
+}
+
+/// Gives the row of rays that graze a jump of density, if they meet no haze, a part of the light of the next row below, where haze begins:
+/// from there the light grows with the square root of the angle, which is that of the place, and logarithms would start at nothing.
+fn begin_at_kink(
+    haze: &mut [Vec4],
+    [columns, rows, layers]: [usize; 3],
+    eye: &Eye,
+    [above, _]: [usize; 2],
+) {
+    /// The part `p` for which `p^(1 - x)` is nearest to `x` between 0 and 1: within 0.15.
+    const PART: f32 = 0.145;
+    let row = (eye.coordinates.kink_place * (above - 1) as f64).round() as usize;
+    if row == 0 {
+        return;
+    }
+    for first in (0..layers).map(|layer| (layer * rows + row) * columns) {
+        for at_kink in first..first + columns {
+            haze[at_kink] = haze[at_kink].max(PART * haze[at_kink - columns]);
+        }
     }
 }
 

@@ -369,7 +369,7 @@ impl Group {
         match (quantity, self.place, self.day) {
             (Quantity::Sky, Air, true) => (0.2, 2.0),
             (Quantity::Sky, Air, false) => (0.4, 2.0),
-            (Quantity::Sky, AboveDust, true) => (0.3, 4.0),
+            (Quantity::Sky, AboveDust, true) => (0.2, 1.0),
             (Quantity::Sky, AboveDust, false) => (0.6, 2.0),
             (Quantity::Sky, Space, _) => (0.3, 2.0),
             (Quantity::SkyColour, Air, true) => (0.1, 1.0),

@@ -4,6 +4,7 @@ use super::block::SampleLight;
 use super::peaked::Peaked;
 use super::table::{SkyTable, TableChannels};
 use super::view::View;
+use crate::axes;
 use crate::debug::debug_fields;
 use crate::math::parallel;
 use crate::transfer::residual::HalfAngle;
@@ -17,8 +18,8 @@ use glam::DVec3;
 pub struct SplitView {
     view: View,
     table: SkyTable,
-    /// Light of each part in the direction of the sun, without its phase function: `[part][wavelength]`.
-    toward_sun: Vec<f32>,
+    /// Light of each part, without its phase function, where they are brightest: `[part][wavelength]`.
+    brightest: Vec<f32>,
 }
 
 debug_fields! { SplitView { view } }
@@ -52,26 +53,18 @@ impl View {
 
 impl SplitView {
     fn new(view: &View) -> Self {
-        /// Elevation above the horizon at which a ray passes much air but not all of it, rad.
-        const LOW_RAD: f64 = 0.03;
         let table = view.table(TableChannels::Spectral);
-        let sun = view.sun();
-        let lowest = view.horizon_elevation_rad() + LOW_RAD;
-        let elevation = sun.y.clamp(-1.0, 1.0).asin().max(lowest);
-        let horizontal = DVec3::new(sun.x, 0.0, sun.z).normalize_or(DVec3::X);
-        let direction = horizontal * elevation.cos() + DVec3::Y * elevation.sin();
         let channels = table.channels();
-        let values = table.parts(direction);
-        let mut toward_sun = values[channels..].to_vec();
-        // Without light from there, such as at night or beyond the limb, the first stream alone.
-        for (index, value) in toward_sun.iter_mut().enumerate() {
+        let mut brightest = brightest(&table);
+        // Without light from there, such as at night, the first stream alone.
+        for (index, value) in brightest.iter_mut().enumerate() {
             let first = table.peaked.parts[index / channels].stream == 0;
             *value = value.max(if first { f32::MIN_POSITIVE } else { 0.0 });
         }
         Self {
             view: view.clone(),
             table,
-            toward_sun,
+            brightest,
         }
     }
 
@@ -94,15 +87,15 @@ impl SplitView {
         !self.peaked().parts.is_empty()
     }
 
-    /// Phase function of the peaked constituents together at the cosine of an angle, 1/sr: the mean by their light in the direction
-    /// of the sun, where it matters most. It includes what further scattering by small angles makes of it there.
+    /// Phase function of the peaked constituents together at the cosine of an angle, 1/sr: the mean by their light in that direction at the
+    /// azimuth of the sun in which they are brightest. It includes what further scattering by small angles makes of it there.
     pub fn phase(&self, cos_angle: f64) -> Vec<f32> {
         /// A floor, as the mean can be 0 between bows.
         const SMALLEST: f32 = 1e-4;
         let channels = self.table.channels();
         let factors = self.peaked().factors(HalfAngle::of_cosine(cos_angle));
         let (mut light, mut whole) = (vec![0.0f32; channels], vec![0.0f32; channels]);
-        for (index, value) in self.toward_sun.iter().enumerate() {
+        for (index, value) in self.brightest.iter().enumerate() {
             light[index % channels] += factors.get(index / channels, index % channels) * value;
             if self.peaked().parts[index / channels].stream == 0 {
                 whole[index % channels] += value;
@@ -185,6 +178,36 @@ impl SplitView {
         let divided = light.iter().zip(&phase).map(|(l, p)| (l / p).max(0.0));
         divided.collect()
     }
+}
+
+/// Light of each part, without its phase function, in that direction at the azimuth of the sun in which the parts together are brightest:
+/// beside the sun, but above a layer of haze where rays pass through it.
+fn brightest(table: &SkyTable) -> Vec<f32> {
+    /// Elevations that are tried on each side of the horizon.
+    const ELEVATIONS: usize = 64;
+    let channels = table.channels();
+    let (of, sun) = (table.coordinates(), table.sun);
+    let beside_horizon = |is_below| {
+        let place = |k: usize| k as f64 / (ELEVATIONS - 1) as f64;
+        (0..ELEVATIONS).map(move |k| of.elevation_rad(place(k), is_below))
+    };
+    let elevations_rad = beside_horizon(false)
+        .chain(beside_horizon(true))
+        .chain([axes::elevation_rad(sun)]);
+    let lights = elevations_rad.map(|elevation_rad| {
+        let direction = table.sun_azimuth * elevation_rad.cos() + DVec3::Y * elevation_rad.sin();
+        let light = table.parts(direction)[channels..].to_vec();
+        let factors = table
+            .peaked
+            .factors(HalfAngle::of_cosine(direction.dot(sun)));
+        let scattered = light.iter().enumerate();
+        let scattered = scattered
+            .map(|(index, light)| factors.get(index / channels, index % channels) * light);
+        (scattered.sum::<f32>(), light)
+    });
+    let none = (0.0, vec![0.0; channels * table.peaked.parts.len()]);
+    let brighter = |a: (f32, Vec<f32>), b: (f32, Vec<f32>)| if b.0 > a.0 { b } else { a };
+    lights.fold(none, brighter).1
 }
 
 #[cfg(test)]
