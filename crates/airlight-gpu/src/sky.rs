@@ -59,7 +59,7 @@ fn numbers(source: &SourceTables, scales: SkyScales) -> Vec<f32> {
         tables.view.dense_share,
         tables.view.dense_azimuth,
         tables.view.dense_width,
-        0.0,
+        tables.view.even_below,
         0.0,
         0.0,
     ]);

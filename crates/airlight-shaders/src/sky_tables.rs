@@ -95,6 +95,7 @@ impl SkyTables {
             dense_share: coordinates.dense_share as f32,
             dense_azimuth: coordinates.dense_azimuth as f32,
             dense_width: coordinates.dense_width as f32,
+            even_below: coordinates.even_below as f32,
         };
         let mut sky = sky(split, &place);
         begin_at_kink(&mut sky.1, sky_size(), &place, SKY_ROWS);

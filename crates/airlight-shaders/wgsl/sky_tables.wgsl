@@ -45,6 +45,8 @@ struct SkyView {
     dense_azimuth: f32,
     /// Width of the dense part, half turns.
     dense_width: f32,
+    /// Share of the rows below the horizon that are as dense at the nadir as from far away: the sine of the angle by which the horizon dips.
+    even_below: f32,
 }
 
 /// Factors from the normalised values in tables to radiance, at four wavelengths.
@@ -132,8 +134,7 @@ fn row_place(view: SkyView, elevation_rad: f32, is_below: bool) -> f32 {
     if is_below {
         let part = (elevation_rad - view.horizon_rad) / (-1.5707963267948966 - view.horizon_rad);
         let root = sqrt(sqrt(clamp(part, 0.0, 1.0)));
-        let linear_below = -sin(view.horizon_rad);
-        return root * (1.0 - linear_below + linear_below * root);
+        return root * (1.0 - view.even_below + view.even_below * root);
     }
     if elevation_rad < view.kink_rad {
         let part = clamp((elevation_rad - view.horizon_rad) / (view.kink_rad - view.horizon_rad), 0.0, 1.0);
@@ -148,9 +149,8 @@ fn row_place(view: SkyView, elevation_rad: f32, is_below: bool) -> f32 {
 /// Cost: no exp. Error: 2e-6 relative plus 4e-6 absolute.
 fn elevation_from_row_place(view: SkyView, place: f32, is_below: bool) -> f32 {
     if is_below {
-        let linear_below = -sin(view.horizon_rad);
-        let even = 1.0 - linear_below;
-        let root = 2.0 * place / (even + sqrt(even * even + 4.0 * linear_below * place));
+        let uneven = 1.0 - view.even_below;
+        let root = 2.0 * place / (uneven + sqrt(uneven * uneven + 4.0 * view.even_below * place));
         let squared = root * root;
         return view.horizon_rad + (-1.5707963267948966 - view.horizon_rad) * squared * squared;
     }

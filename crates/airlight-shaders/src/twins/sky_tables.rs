@@ -50,6 +50,8 @@ pub struct SkyView {
     pub dense_azimuth: f32,
     /// Width of the dense part, half turns.
     pub dense_width: f32,
+    /// Share of the rows below the horizon that are as dense at the nadir as from far away: the sine of the angle by which the horizon dips.
+    pub even_below: f32,
 }
 
 /// Factors from the normalised values in tables to radiance, at four wavelengths.
@@ -132,8 +134,7 @@ pub fn row_place(view: SkyView, elevation_rad: f32, is_below: bool) -> f32 {
     let part = |from: f32, to: f32| ((elevation_rad - from) / (to - from)).clamp(0.0, 1.0);
     if is_below {
         let root = part(view.horizon_rad, -FRAC_PI_2).sqrt().sqrt();
-        let linear_below = -view.horizon_rad.sin();
-        return root * (1.0 - linear_below + linear_below * root);
+        return root * (1.0 - view.even_below + view.even_below * root);
     }
     if elevation_rad < view.kink_rad {
         let part = part(view.horizon_rad, view.kink_rad);
@@ -146,9 +147,9 @@ pub fn row_place(view: SkyView, elevation_rad: f32, is_below: bool) -> f32 {
 pub fn elevation_from_row_place(view: SkyView, place: f32, is_below: bool) -> f32 {
     let between = |from: f32, to: f32, part: f32| from + (to - from) * part;
     if is_below {
-        let linear_below = -view.horizon_rad.sin();
-        let even = 1.0 - linear_below;
-        let root = 2.0 * place / (even + (even * even + 4.0 * linear_below * place).sqrt());
+        let uneven = 1.0 - view.even_below;
+        let root =
+            2.0 * place / (uneven + (uneven * uneven + 4.0 * view.even_below * place).sqrt());
         return between(view.horizon_rad, -FRAC_PI_2, root.powi(4));
     }
     if place < view.kink_place {

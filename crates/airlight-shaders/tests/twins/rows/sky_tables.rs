@@ -12,7 +12,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 flat_struct! {
     twins::sky_tables::SkyView { sun, height_m, ground_radius_m, air_height_m, horizon_rad, highest_rad, kink_rad, kink_place,
-        dense_share, dense_azimuth, dense_width }
+        dense_share, dense_azimuth, dense_width, even_below }
     twins::sky_tables::SkyScales { smooth_light, haze }
     twins::sky_tables::SpectralPath { transmittance, path_radiance }
 }
@@ -57,12 +57,13 @@ fn view(r: &mut Random) -> Vec<f32> {
         share,
         r.or(&[0.0, 1.0], Random::unit),
         r.or(&[0.05, 10.0], |r| r.decades(0.05, 10.0)),
+        -horizon.sin() as f32,
     ]);
     all
 }
 
 /// Number of numbers of a view.
-const VIEW: usize = 13;
+const VIEW: usize = 14;
 
 /// A view and a direction, which is not at the horizon or the limb, where radiance jumps.
 fn view_and_direction(r: &mut Random) -> Vec<f32> {
@@ -126,8 +127,8 @@ fn place(view: &[f64], elevation: f64, below: bool) -> f64 {
     let part = |from: f64, to: f64| ((elevation - from) / (to - from)).clamp(0.0, 1.0);
     if below {
         let part = part(horizon, -FRAC_PI_2);
-        let space = -horizon.sin();
-        (1.0 - space) * part.powf(0.25) + space * part.powf(0.5)
+        let even = view[13];
+        (1.0 - even) * part.powf(0.25) + even * part.powf(0.5)
     } else if elevation < kink {
         kink_place * (1.0 - 2.0 * part(horizon, kink)).acos() / PI
     } else {
