@@ -259,6 +259,9 @@ impl Eye {
     }
 }
 
+/// The part `p` for which `p^(1 - x)` is nearest to `x` between 0 and 1, within 0.15: what stands for nothing in logarithms between which
+/// light begins.
+const BEGINNING: f32 = 0.145;
 const SKY_COLUMNS: usize = twin::SKY_AZIMUTHS as usize;
 const SKY_ROWS: [usize; 2] = [twin::SKY_ROWS_ABOVE as usize, twin::SKY_ROWS_BELOW as usize];
 const AERIAL_COLUMNS: usize = twin::AERIAL_AZIMUTHS as usize;
@@ -306,10 +309,11 @@ fn aerial(split: &SplitView, eye: &Eye, view: &twin::SkyView) -> Aerial {
         let (elevation, is_below) = eye.elevation(row, AERIAL_ROWS);
         let span = twin::air_span_m(*view, elevation.sin() as f32, is_below);
         let (start_m, length_m) = (f64::from(span.x), f64::from(span.y - span.x));
+        let first_step = twin::first_step(*view, span, is_below);
         starts_m.push(start_m);
         let stops_m = (0..distances).map(|step| {
             let place = (step as f64).max(FIRST_STEP) / (distances - 1) as f64;
-            start_m + length_m * f64::from(twin::part_from_place(place as f32))
+            start_m + length_m * f64::from(twin::part_from_place(place as f32, first_step))
         });
         let stops_m: Vec<f64> = stops_m.collect();
         let directions = (0..columns).map(|column| eye.direction(column, columns, elevation));
@@ -324,6 +328,12 @@ fn aerial(split: &SplitView, eye: &Eye, view: &twin::SkyView) -> Aerial {
             let opacity = vec4(&stop.optical_depth).map_lanes(|depth| -(-depth).exp_m1());
             smooth[texel] = source(&stop.smooth, opacity);
             haze[texel] = source(&stop.peaked, opacity);
+        }
+    }
+    let layer = columns * rows;
+    for texel in (0..layer * (distances - 1)).rev() {
+        if haze[texel] == Vec4::ZERO {
+            haze[texel] = BEGINNING * haze[texel + layer];
         }
     }
     let mut extinction = Vec::with_capacity(rows * distances);
@@ -353,15 +363,13 @@ fn begin_at_kink(
     eye: &Eye,
     [above, _]: [usize; 2],
 ) {
-    /// The part `p` for which `p^(1 - x)` is nearest to `x` between 0 and 1: within 0.15.
-    const PART: f32 = 0.145;
     let row = (eye.coordinates.kink_place * (above - 1) as f64).round() as usize;
     if row == 0 {
         return;
     }
     for first in (0..layers).map(|layer| (layer * rows + row) * columns) {
         for at_kink in first..first + columns {
-            haze[at_kink] = haze[at_kink].max(PART * haze[at_kink - columns]);
+            haze[at_kink] = haze[at_kink].max(BEGINNING * haze[at_kink - columns]);
         }
     }
 }

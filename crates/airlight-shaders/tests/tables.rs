@@ -9,7 +9,7 @@ use airlight_shaders::twins::colour::rgb_from_spectrum;
 use airlight_shaders::twins::sky_tables::{aerial_perspective, sky_radiance};
 use airlight_shaders::twins::texture::{LinearSampler, Texture};
 use airlight_shaders::{ColourFit, SkyTables, wavelength_grid};
-use glam::Vec4;
+use glam::{Vec3, Vec4};
 use std::fmt;
 
 /// Differences of one quantity.
@@ -276,6 +276,46 @@ mod guards {
         }
         println!("dust below the eye: {sky} at {}", sky.at);
         assert!(sky.rms() < 0.004 && sky.worst.abs() < 0.02);
+    }
+
+    /// Air before terrain up to 9 km high, straight down and slanting, from high in the air, from a low orbit and from a geostationary one.
+    #[test]
+    fn tables_reproduce_the_air_before_terrain_seen_from_above() {
+        let air = Preset::Average.atmosphere();
+        let sky = Sky::prepare(&air, &wavelength_grid(), &SkySettings::default()).unwrap();
+        let fit = ColourFit::new(&air, SunCoverage::near(30.0, 2e4)).unwrap();
+        for height_m in [2e4, 4e5, 3.6e7] {
+            let view = sky.view(height_m, axes::direction(200.0, 30.0));
+            let tables = SkyTables::new(&view, &fit, RgbSpace::Srgb).unwrap();
+            let luminance = |rgb: Vec3| RgbSpace::Srgb.luminance(rgb.to_array().map(f64::from));
+            let (ground_m, _) = view.bounds_m();
+            let mut all = Differences::default();
+            for slant in [0.0, 0.4, 0.8, 0.95] {
+                // The share of the angle from the nadir to the horizon.
+                let nadir_angle = 0.5 * std::f64::consts::PI + view.horizon_elevation_rad();
+                let elevation = (slant * nadir_angle).to_degrees() - 90.0;
+                // Not where the sun has set.
+                for azimuth in [205.0, 240.0, 290.0] {
+                    let direction = axes::direction(azimuth, elevation);
+                    for terrain_m in [0.0, 1e3, 2e3, 4e3, 6e3, 9e3] {
+                        let (down, radius_m) =
+                            (-direction.y * view.radius_m(), ground_m + terrain_m);
+                        let chord = (radius_m - view.radius_m()) * (radius_m + view.radius_m());
+                        let distance_m = down - (down * down + chord).sqrt();
+                        let path = tables.rgb_path(direction.as_vec3(), distance_m as f32);
+                        let right = view.along(direction, Some(distance_m)).path_radiance();
+                        let right =
+                            rgb_from_spectrum(tables.radiance_weights, Vec4::from_slice(&right));
+                        all.add(
+                            luminance(path.path_radiance) / luminance(right) - 1.0,
+                            || format!("slant {slant}, azimuth {azimuth}, {terrain_m} m"),
+                        );
+                    }
+                }
+            }
+            println!("terrain from {height_m} m: {all} at {}", all.at);
+            assert!(all.rms() < 0.005 && all.worst.abs() < 0.015);
+        }
     }
 
     #[test]

@@ -84,6 +84,7 @@ struct SkyView {
     float dense_share;
     float dense_azimuth;
     float dense_width;
+    float even_below;
 };
 struct SkyScales {
     vec4 smooth_light;
@@ -1161,9 +1162,9 @@ vec2 lit_interval(LightRay ray_9, float cos_angle) {
     bool local_13 = false;
     float to_m_1 = INFINITE_M;
     bool local_14 = false;
-    float length_m_14 = ray_9.geometry.length_m;
+    float length_m_15 = ray_9.geometry.length_m;
     if ((ray_9.light.kind != LIGHT_SPOT)) {
-        return vec2(0.0, length_m_14);
+        return vec2(0.0, length_m_15);
     }
     float h_3 = ray_9.geometry.nearest_m;
     float across = (ray_9.across_m / h_3);
@@ -1204,7 +1205,7 @@ vec2 lit_interval(LightRay ray_9, float cos_angle) {
     }
     float _e94 = from_m_2;
     float _e95 = to_m_1;
-    vec2 interval = clamp((vec2(_e94, _e95) - vec2(ray_9.geometry.start_m)), vec2(0.0), vec2(length_m_14));
+    vec2 interval = clamp((vec2(_e94, _e95) - vec2(ray_9.geometry.start_m)), vec2(0.0), vec2(length_m_15));
     return ((interval.y > interval.x) ? interval : vec2(0.0));
 }
 
@@ -1758,8 +1759,7 @@ float row_place(SkyView view_2, float elevation_rad, bool is_below) {
     if (is_below) {
         float part_2 = ((elevation_rad - view_2.horizon_rad) / (-1.5707964 - view_2.horizon_rad));
         float root_2 = sqrt(sqrt(clamp(part_2, 0.0, 1.0)));
-        float linear_below = -(sin(view_2.horizon_rad));
-        return (root_2 * ((1.0 - linear_below) + (linear_below * root_2)));
+        return (root_2 * ((1.0 - view_2.even_below) + (view_2.even_below * root_2)));
     }
     if ((elevation_rad < view_2.kink_rad)) {
         float part_3 = clamp(((elevation_rad - view_2.horizon_rad) / (view_2.kink_rad - view_2.horizon_rad)), 0.0, 1.0);
@@ -1773,9 +1773,8 @@ float row_place(SkyView view_2, float elevation_rad, bool is_below) {
 // Cost: no exp.
 float elevation_from_row_place(SkyView view_3, float place_3, bool is_below_1) {
     if (is_below_1) {
-        float linear_below_1 = -(sin(view_3.horizon_rad));
-        float even = (1.0 - linear_below_1);
-        float root_3 = ((2.0 * place_3) / (even + sqrt(((even * even) + ((4.0 * linear_below_1) * place_3)))));
+        float uneven = (1.0 - view_3.even_below);
+        float root_3 = ((2.0 * place_3) / (uneven + sqrt(((uneven * uneven) + ((4.0 * view_3.even_below) * place_3)))));
         float squared = (root_3 * root_3);
         return (view_3.horizon_rad + (((-1.5707964 - view_3.horizon_rad) * squared) * squared));
     }
@@ -1856,16 +1855,41 @@ vec2 air_span_m(SkyView view_8, float sin_elevation_9, bool meets_ground) {
     return vec2(start_4, max(_e50, start_4));
 }
 
-// Place from 0 to 1 of a part of the way through the air in tables by distance, which are dense near the eye.
+// Length of the first step between the distances of a ray with an interval in the air, relative to even steps. From inside the air distances are dense near the eye, at the square of the place: 0; from above it towards the ground, where most air is, dense there: 2. Steep rays from high in the air are between.
 // Cost: no exp.
-float place_from_part(float part) {
-    return sqrt(part);
+float first_step(SkyView view_9, vec2 span_m, bool meets_ground_1) {
+    if ((view_9.height_m >= view_9.air_height_m)) {
+        return (meets_ground_1 ? 2.0 : 1.0);
+    }
+    if (!(meets_ground_1)) {
+        return 0.0;
+    }
+    float slant = (1.0 - min((view_9.height_m / max(span_m.y, 1.0)), 1.0));
+    float high = min(((2.5 * view_9.height_m) / view_9.air_height_m), 1.0);
+    return ((2.0 * high) * (1.0 - (((slant * slant) * slant) * slant)));
+}
+
+// Place from 0 to 1 of a part of the way through the air among distances with a `first_step`.
+// Cost: no exp.
+float place_from_part(float part, float first_step_1) {
+    float last_step = (2.0 - first_step_1);
+    float root_5 = sqrt(((((1.0 - part) * first_step_1) * first_step_1) + ((part * last_step) * last_step)));
+    return ((2.0 * part) / max((first_step_1 + root_5), 1e-20));
 }
 
 // Inverse of `place_from_part`.
 // Cost: no exp.
-float part_from_place(float place_4) {
-    return (place_4 * place_4);
+float part_from_place(float place_4, float first_step_2) {
+    return (place_4 * (first_step_2 + ((1.0 - first_step_2) * place_4)));
+}
+
+// Place from 0 to 1 of a length in the air among the distances of a ray with an interval in the air.
+// Cost: no exp.
+float distance_place(SkyView view_10, vec2 span_m_1, float length_m_14, bool meets_ground_2) {
+    float part_6 = clamp((length_m_14 / max((span_m_1.y - span_m_1.x), 1e-6)), 0.0, 1.0);
+    float _e13 = first_step(view_10, span_m_1, meets_ground_2);
+    float _e14 = place_from_part(part_6, _e13);
+    return _e14;
 }
 
 // Place from 0 to 1 of a scattering angle in a table of phase functions, dense forwards, by 1 minus the cosine.
@@ -1893,13 +1917,13 @@ vec4 haze_phase(sampler2D phase_table, float one_minus_cos_7) {
 
 // Radiance of the sky, or of the ground below the horizon, along a direction at four wavelengths, without the sun's disc.
 // Cost: 8 exp, 3 reads.
-vec4 sky_radiance(SkyView view_9, SkyScales scales, sampler2D smooth_table, sampler2D haze_table, sampler2D phase_table_1, vec3 direction_8) {
+vec4 sky_radiance(SkyView view_11, SkyScales scales, sampler2D smooth_table, sampler2D haze_table, sampler2D phase_table_1, vec3 direction_8) {
     float _e7 = elevation_of(direction_8);
-    if ((_e7 > view_9.highest_rad)) {
+    if ((_e7 > view_11.highest_rad)) {
         return vec4(0.0);
     }
-    vec2 _e12 = uv_from_direction(view_9, direction_8);
-    float _e14 = one_minus_cos_between(direction_8, view_9.sun);
+    vec2 _e12 = uv_from_direction(view_11, direction_8);
+    float _e14 = one_minus_cos_between(direction_8, view_11.sun);
     vec4 _e15 = haze_phase(phase_table_1, _e14);
     vec4 _e17 = textureLod(smooth_table, vec2(_e12), 0.0);
     vec4 smooth_light = (exp(_e17) * scales.smooth_light);
@@ -1910,14 +1934,14 @@ vec4 sky_radiance(SkyView view_9, SkyScales scales, sampler2D smooth_table, samp
 
 // Air between the eye and a point at a distance along a direction, at four wavelengths. The extinction table holds the mean extinction from the first air on, 1/km.
 // Cost: 12 exp, 4 reads.
-SpectralPath aerial_perspective(SkyView view_10, SkyScales scales_1, sampler3D smooth_table_1, sampler3D haze_table_1, sampler2D extinction_table, sampler2D phase_table_2, vec3 direction_9, float distance_m_1) {
+SpectralPath aerial_perspective(SkyView view_12, SkyScales scales_1, sampler3D smooth_table_1, sampler3D haze_table_1, sampler2D extinction_table, sampler2D phase_table_2, vec3 direction_9, float distance_m_1) {
     bool local_17 = false;
     float _e9 = elevation_of(direction_9);
-    bool is_below_5 = (_e9 < view_10.horizon_rad);
-    vec2 _e13 = air_span_m(view_10, direction_9.y, is_below_5);
-    float length_m_15 = (min(distance_m_1, _e13.y) - _e13.x);
-    if (!((length_m_15 <= 0.0))) {
-        local_17 = (_e9 > view_10.highest_rad);
+    bool is_below_5 = (_e9 < view_12.horizon_rad);
+    vec2 _e13 = air_span_m(view_12, direction_9.y, is_below_5);
+    float length_m_16 = (min(distance_m_1, _e13.y) - _e13.x);
+    if (!((length_m_16 <= 0.0))) {
+        local_17 = (_e9 > view_12.highest_rad);
     } else {
         local_17 = true;
     }
@@ -1925,37 +1949,37 @@ SpectralPath aerial_perspective(SkyView view_10, SkyScales scales_1, sampler3D s
     if (_e26) {
         return SpectralPath(vec4(1.0), vec4(0.0));
     }
-    float _e39 = place_from_part(clamp((length_m_15 / (_e13.y - _e13.x)), 0.0, 1.0));
-    float _e42 = row_coordinate(view_10, _e9, is_below_5, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
-    float _e44 = azimuth_place(direction_9, view_10.sun);
-    float _e45 = column_place(view_10, _e44);
-    float _e47 = texel_coordinate(_e45, AERIAL_AZIMUTHS);
-    float _e49 = texel_coordinate(_e39, AERIAL_DISTANCES);
-    vec3 uvw = vec3(_e47, _e42, _e49);
-    float _e52 = one_minus_cos_between(direction_9, view_10.sun);
-    vec4 _e53 = haze_phase(phase_table_2, _e52);
-    vec4 _e56 = textureLod(extinction_table, vec2(uvw.zy), 0.0);
-    vec4 depth_5 = (_e56 * (length_m_15 * 0.001));
-    vec4 _e61 = textureLod(smooth_table_1, vec3(uvw), 0.0);
-    vec4 smooth_light_1 = (exp(_e61) * scales_1.smooth_light);
-    vec4 _e66 = textureLod(haze_table_1, vec3(uvw), 0.0);
-    vec4 haze_1 = (exp(_e66) * scales_1.haze);
-    vec3 _e71 = mean_transmittance_rgb(depth_5.xyz);
-    float _e73 = mean_transmittance(depth_5.w);
-    vec4 opacity_2 = (depth_5 * vec4(_e71, _e73));
-    return SpectralPath((vec4(1.0) - opacity_2), ((smooth_light_1 + (haze_1 * _e53)) * opacity_2));
+    float _e32 = distance_place(view_12, _e13, length_m_16, is_below_5);
+    float _e35 = row_coordinate(view_12, _e9, is_below_5, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    float _e37 = azimuth_place(direction_9, view_12.sun);
+    float _e38 = column_place(view_12, _e37);
+    float _e40 = texel_coordinate(_e38, AERIAL_AZIMUTHS);
+    float _e42 = texel_coordinate(_e32, AERIAL_DISTANCES);
+    vec3 uvw = vec3(_e40, _e35, _e42);
+    float _e45 = one_minus_cos_between(direction_9, view_12.sun);
+    vec4 _e46 = haze_phase(phase_table_2, _e45);
+    vec4 _e49 = textureLod(extinction_table, vec2(uvw.zy), 0.0);
+    vec4 depth_5 = (_e49 * (length_m_16 * 0.001));
+    vec4 _e54 = textureLod(smooth_table_1, vec3(uvw), 0.0);
+    vec4 smooth_light_1 = (exp(_e54) * scales_1.smooth_light);
+    vec4 _e59 = textureLod(haze_table_1, vec3(uvw), 0.0);
+    vec4 haze_1 = (exp(_e59) * scales_1.haze);
+    vec3 _e64 = mean_transmittance_rgb(depth_5.xyz);
+    float _e66 = mean_transmittance(depth_5.w);
+    vec4 opacity_2 = (depth_5 * vec4(_e64, _e66));
+    return SpectralPath((vec4(1.0) - opacity_2), ((smooth_light_1 + (haze_1 * _e46)) * opacity_2));
 }
 
 // Transmittance of the air between the eye and a point at a distance along a direction, at four wavelengths: that of `aerial_perspective` alone.
 // Cost: 4 exp, 1 read.
-vec4 aerial_transmittance(SkyView view_11, sampler2D extinction_table_1, vec3 direction_10, float distance_m_2) {
+vec4 aerial_transmittance(SkyView view_13, sampler2D extinction_table_1, vec3 direction_10, float distance_m_2) {
     bool local_18 = false;
     float _e5 = elevation_of(direction_10);
-    bool is_below_6 = (_e5 < view_11.horizon_rad);
-    vec2 _e9 = air_span_m(view_11, direction_10.y, is_below_6);
-    float length_m_16 = (min(distance_m_2, _e9.y) - _e9.x);
-    if (!((length_m_16 <= 0.0))) {
-        local_18 = (_e5 > view_11.highest_rad);
+    bool is_below_6 = (_e5 < view_13.horizon_rad);
+    vec2 _e9 = air_span_m(view_13, direction_10.y, is_below_6);
+    float length_m_17 = (min(distance_m_2, _e9.y) - _e9.x);
+    if (!((length_m_17 <= 0.0))) {
+        local_18 = (_e5 > view_13.highest_rad);
     } else {
         local_18 = true;
     }
@@ -1963,12 +1987,12 @@ vec4 aerial_transmittance(SkyView view_11, sampler2D extinction_table_1, vec3 di
     if (_e22) {
         return vec4(1.0);
     }
-    float _e32 = place_from_part(clamp((length_m_16 / (_e9.y - _e9.x)), 0.0, 1.0));
-    float _e35 = row_coordinate(view_11, _e5, is_below_6, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
-    float _e37 = texel_coordinate(_e32, AERIAL_DISTANCES);
-    vec2 uv = vec2(_e37, _e35);
-    vec4 _e40 = textureLod(extinction_table_1, vec2(uv), 0.0);
-    return exp((_e40 * (length_m_16 * -0.001)));
+    float _e25 = distance_place(view_13, _e9, length_m_17, is_below_6);
+    float _e28 = row_coordinate(view_13, _e5, is_below_6, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    float _e30 = texel_coordinate(_e25, AERIAL_DISTANCES);
+    vec2 uv = vec2(_e30, _e28);
+    vec4 _e33 = textureLod(extinction_table_1, vec2(uv), 0.0);
+    return exp((_e33 * (length_m_17 * -0.001)));
 }
 
 // Transmittance and path radiance in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
@@ -1988,9 +2012,9 @@ float fog_row_place(float per_sine, float sine, float elevation_rad_3) {
 
 // Texture coordinate of the rows of a direction: falling rays come first.
 // Cost: 2 exp.
-float fog_row_coordinate(FogTableView view_12, vec3 direction_11) {
+float fog_row_coordinate(FogTableView view_14, vec3 direction_11) {
     bool is_above = (direction_11.y > 0.0);
-    float per_sine_1 = (is_above ? view_12.above_per_sine : view_12.below_per_sine);
+    float per_sine_1 = (is_above ? view_14.above_per_sine : view_14.below_per_sine);
     float _e10 = elevation_of(direction_11);
     float _e12 = fog_row_place(per_sine_1, abs(direction_11.y), abs(_e10));
     return ((((is_above ? FOG_ROWS : 0.0) + 0.5) + (_e12 * 63.0)) / 128.0);
@@ -1998,8 +2022,8 @@ float fog_row_coordinate(FogTableView view_12, vec3 direction_11) {
 
 // Texture coordinate in stacked tables from that in the table of the layer.
 // Cost: no exp.
-float fog_stacked_coordinate(FogTableView view_13, float coordinate_2) {
-    return ((view_13.layer + coordinate_2) / view_13.layer_count);
+float fog_stacked_coordinate(FogTableView view_15, float coordinate_2) {
+    return ((view_15.layer + coordinate_2) / view_15.layer_count);
 }
 
 // Opacity of an optical depth: 1 minus the transmittance, without cancellation.
@@ -2011,8 +2035,8 @@ vec3 fog_opacity(vec3 depth_2) {
 
 // Place of a distance, 0 to 1, from the opacity and the transmittance up to there, relative to those of the whole ray to the ground or through the fog.
 // Cost: 6 exp.
-float fog_distance_place(FogTableView view_14, float sin_elevation_10, vec3 opacity, vec3 transmittance_1) {
-    vec3 vertical = ((sin_elevation_10 > 0.0) ? view_14.depth_above : view_14.depth_below);
+float fog_distance_place(FogTableView view_16, float sin_elevation_10, vec3 opacity, vec3 transmittance_1) {
+    vec3 vertical = ((sin_elevation_10 > 0.0) ? view_16.depth_above : view_16.depth_below);
     vec3 depth_6 = min((vertical / vec3(max(abs(sin_elevation_10), 1e-10))), vec3(1e25));
     vec3 _e17 = fog_opacity(depth_6);
     float whole = dot(_e17, vec3(1.0));
@@ -2024,9 +2048,9 @@ float fog_distance_place(FogTableView view_14, float sin_elevation_10, vec3 opac
 
 // Sunlight that is scattered once with a phase function, by its index, in a stream (0, 1 or 2), per unit of opacity, before its scale: from the texture coordinates of distance, row and angle.
 // Cost: 3 exp, 2 reads.
-vec3 fog_stream_light(FogTableView view_15, sampler3D stream_table, sampler2D stream_phase_table, vec3 place_6, float phase_1, float stream) {
-    float slice = ((((3.0 * phase_1) + stream) + 0.5) / (3.0 * view_15.phase_count));
-    float _e17 = fog_stacked_coordinate(view_15, slice);
+vec3 fog_stream_light(FogTableView view_17, sampler3D stream_table, sampler2D stream_phase_table, vec3 place_6, float phase_1, float stream) {
+    float slice = ((((3.0 * phase_1) + stream) + 0.5) / (3.0 * view_17.phase_count));
+    float _e17 = fog_stacked_coordinate(view_17, slice);
     vec3 uvw_1 = vec3(place_6.xy, _e17);
     vec4 logarithms = textureLod(stream_table, vec3(uvw_1), 0.0);
     vec4 scattered_1 = textureLod(stream_phase_table, vec2(vec2(place_6.z, slice)), 0.0);
@@ -2035,21 +2059,21 @@ vec3 fog_stream_light(FogTableView view_15, sampler3D stream_table, sampler2D st
 
 // A layer of fog between the eye and a point, by its optical depth on the way: extinction times `exponential_column_m`, or the column of another profile. Rays end at the ground. Of several layers, transmittances multiply and path radiances add up. A step is a phase function of the fog.
 // Cost: 14 exp, 9 exp a step, 1 read, 6 reads a step.
-PathOptics tabulated_fog(FogTableView view_16, sampler3D diffuse_table, sampler3D stream_table_1, sampler2D stream_phase_table_1, vec3 direction_12, vec3 optical_depth_2) {
+PathOptics tabulated_fog(FogTableView view_18, sampler3D diffuse_table, sampler3D stream_table_1, sampler2D stream_phase_table_1, vec3 direction_12, vec3 optical_depth_2) {
     vec3 sunlit_1 = vec3(0.0);
     float phase_2 = 0.0;
     vec3 _e7 = fog_opacity(optical_depth_2);
     vec3 transmittance_3 = exp(-(optical_depth_2));
-    float _e11 = azimuth_place(direction_12, view_16.sun);
+    float _e11 = azimuth_place(direction_12, view_18.sun);
     float _e13 = texel_coordinate(_e11, FOG_AZIMUTHS);
-    float _e14 = fog_row_coordinate(view_16, direction_12);
-    float _e16 = fog_distance_place(view_16, direction_12.y, _e7, transmittance_3);
+    float _e14 = fog_row_coordinate(view_18, direction_12);
+    float _e16 = fog_distance_place(view_18, direction_12.y, _e7, transmittance_3);
     float _e18 = texel_coordinate(_e16, FOG_DISTANCES);
-    float _e19 = fog_stacked_coordinate(view_16, _e18);
+    float _e19 = fog_stacked_coordinate(view_18, _e18);
     vec3 uvw_2 = vec3(_e13, _e14, _e19);
     vec4 _e22 = textureLod(diffuse_table, vec3(uvw_2), 0.0);
     vec3 diffuse = _e22.xyz;
-    float _e25 = one_minus_cos_between(direction_12, view_16.sun);
+    float _e25 = one_minus_cos_between(direction_12, view_18.sun);
     float _e26 = phase_place(_e25);
     float _e28 = texel_coordinate(_e26, PHASE_ANGLES);
     vec3 place_10 = vec3(_e18, _e14, _e28);
@@ -2061,23 +2085,23 @@ PathOptics tabulated_fog(FogTableView view_16, sampler3D diffuse_table, sampler3
         }
         loop_init_12 = false;
         float _e35 = phase_2;
-        if ((_e35 < view_16.phase_count)) {
+        if ((_e35 < view_18.phase_count)) {
         } else {
             break;
         }
         {
             vec3 _e38 = sunlit_1;
             float _e39 = phase_2;
-            vec3 _e41 = fog_stream_light(view_16, stream_table_1, stream_phase_table_1, place_10, _e39, 0.0);
+            vec3 _e41 = fog_stream_light(view_18, stream_table_1, stream_phase_table_1, place_10, _e39, 0.0);
             float _e42 = phase_2;
-            vec3 _e44 = fog_stream_light(view_16, stream_table_1, stream_phase_table_1, place_10, _e42, 1.0);
+            vec3 _e44 = fog_stream_light(view_18, stream_table_1, stream_phase_table_1, place_10, _e42, 1.0);
             float _e46 = phase_2;
-            vec3 _e48 = fog_stream_light(view_16, stream_table_1, stream_phase_table_1, place_10, _e46, 2.0);
+            vec3 _e48 = fog_stream_light(view_18, stream_table_1, stream_phase_table_1, place_10, _e46, 2.0);
             sunlit_1 = (_e38 + ((_e41 + _e44) + _e48));
         }
     }
     vec3 _e57 = sunlit_1;
-    vec3 source_1 = ((view_16.diffuse_scale * diffuse) + (view_16.sunlit_scale * max(_e57, vec3(0.0))));
+    vec3 source_1 = ((view_18.diffuse_scale * diffuse) + (view_18.sunlit_scale * max(_e57, vec3(0.0))));
     return PathOptics(transmittance_3, (_e7 * source_1));
 }
 
@@ -2173,11 +2197,11 @@ ArticleSky article_sky(float eye_altitude_m, float zenith_illuminance) {
 
 // Light that a point scatters along a view ray, per metre.
 // Cost: 6 exp, 3 exp a step; 8 steps.
-vec3 article_source(ArticleSky sky, vec3 position_7, vec3 view_17, vec3 sun_1) {
+vec3 article_source(ArticleSky sky, vec3 position_7, vec3 view_19, vec3 sun_1) {
     float _e5 = article_distance_m(position_7, sun_1, ARTICLE_TOP_RADIUS_M);
     vec3 leaves = (position_7 + (sun_1 * _e5));
     vec3 _e8 = article_transmittance(position_7, leaves);
-    float mu_3 = dot(view_17, sun_1);
+    float mu_3 = dot(view_19, sun_1);
     vec3 _e10 = article_sigma_rayleigh(position_7);
     float _e11 = article_rayleigh_phase(mu_3);
     vec3 rayleigh = (_e10 * _e11);
@@ -2189,11 +2213,11 @@ vec3 article_source(ArticleSky sky, vec3 position_7, vec3 view_17, vec3 sun_1) {
 
 // Luminance of the sky along a direction above the horizon, without the sun's disc.
 // Cost: 15 exp a step; 8 steps, in each of which two marches of 8 steps take 6 of these, 456 in all.
-vec3 article_luminance(ArticleSky sky_1, vec3 view_18, vec3 sun_2) {
+vec3 article_luminance(ArticleSky sky_1, vec3 view_20, vec3 sun_2) {
     vec3 sum_6 = vec3(0.0);
     int i_13 = 0;
-    float _e6 = article_distance_m(sky_1.eye, view_18, ARTICLE_TOP_RADIUS_M);
-    vec3 leaves_1 = (sky_1.eye + (view_18 * _e6));
+    float _e6 = article_distance_m(sky_1.eye, view_20, ARTICLE_TOP_RADIUS_M);
+    vec3 leaves_1 = (sky_1.eye + (view_20 * _e6));
     vec3 ds_1 = ((leaves_1 - sky_1.eye) / vec3(8.0));
     vec3 direction_15 = (ds_1 / vec3(length(ds_1)));
     bool loop_init_14 = true;
@@ -2223,11 +2247,11 @@ vec3 article_luminance(ArticleSky sky_1, vec3 view_18, vec3 sun_2) {
 
 // Luminance of the sun's disc along a direction above the horizon, whose edge is smooth from 0.95 to 1.05 of its radius. The cosine is clamped to 1, unlike as printed.
 // Cost: 3 exp, 3 exp a step; 8 steps.
-vec3 article_disc(ArticleSky sky_2, vec3 view_19, vec3 sun_3) {
-    float angle = acos(min(dot(view_19, sun_3), 1.0));
+vec3 article_disc(ArticleSky sky_2, vec3 view_21, vec3 sun_3) {
+    float angle = acos(min(dot(view_21, sun_3), 1.0));
     float disc = (1.0 - smoothstep((0.95 * sky_2.sun_radius_rad), (1.05 * sky_2.sun_radius_rad), angle));
-    float _e19 = article_distance_m(sky_2.eye, view_19, ARTICLE_TOP_RADIUS_M);
-    vec3 leaves_2 = (sky_2.eye + (view_19 * _e19));
+    float _e19 = article_distance_m(sky_2.eye, view_21, ARTICLE_TOP_RADIUS_M);
+    vec3 leaves_2 = (sky_2.eye + (view_21 * _e19));
     vec3 _e25 = article_transmittance(sky_2.eye, leaves_2);
     return ((sky_2.outer_space * disc) * _e25);
 }

@@ -104,7 +104,8 @@ struct SkyView {
     float dense_share;
     float dense_azimuth;
     float dense_width;
-    char _pad11[12];
+    float even_below;
+    char _pad12[8];
 };
 struct SkyScales {
     metal::float4 smooth_light;
@@ -1399,9 +1400,9 @@ metal::float2 lit_interval(
     bool local_13 = {};
     float to_m_1 = INFINITE_M;
     bool local_14 = {};
-    float length_m_14 = ray_9.geometry.length_m;
+    float length_m_15 = ray_9.geometry.length_m;
     if (ray_9.light.kind != LIGHT_SPOT) {
-        return metal::float2(0.0, length_m_14);
+        return metal::float2(0.0, length_m_15);
     }
     float h_3 = ray_9.geometry.nearest_m;
     float across = ray_9.across_m / h_3;
@@ -1442,7 +1443,7 @@ metal::float2 lit_interval(
     }
     float _e94 = from_m_2;
     float _e95 = to_m_1;
-    metal::float2 interval = metal::clamp(metal::float2(_e94, _e95) - metal::float2(ray_9.geometry.start_m), metal::float2(0.0), metal::float2(length_m_14));
+    metal::float2 interval = metal::clamp(metal::float2(_e94, _e95) - metal::float2(ray_9.geometry.start_m), metal::float2(0.0), metal::float2(length_m_15));
     return (interval.y > interval.x) ? interval : metal::float2(0.0);
 }
 
@@ -2108,8 +2109,7 @@ float row_place(
     if (is_below) {
         float part_2 = (elevation_rad - view_2.horizon_rad) / (-1.5707964 - view_2.horizon_rad);
         float root_2 = metal::sqrt(metal::sqrt(metal::clamp(part_2, 0.0, 1.0)));
-        float linear_below = -(metal::sin(view_2.horizon_rad));
-        return root_2 * ((1.0 - linear_below) + (linear_below * root_2));
+        return root_2 * ((1.0 - view_2.even_below) + (view_2.even_below * root_2));
     }
     if (elevation_rad < view_2.kink_rad) {
         float part_3 = metal::clamp((elevation_rad - view_2.horizon_rad) / (view_2.kink_rad - view_2.horizon_rad), 0.0, 1.0);
@@ -2127,9 +2127,8 @@ float elevation_from_row_place(
     bool is_below_1
 ) {
     if (is_below_1) {
-        float linear_below_1 = -(metal::sin(view_3.horizon_rad));
-        float even = 1.0 - linear_below_1;
-        float root_3 = (2.0 * place_3) / (even + metal::sqrt((even * even) + ((4.0 * linear_below_1) * place_3)));
+        float uneven = 1.0 - view_3.even_below;
+        float root_3 = (2.0 * place_3) / (uneven + metal::sqrt((uneven * uneven) + ((4.0 * view_3.even_below) * place_3)));
         float squared = root_3 * root_3;
         return view_3.horizon_rad + (((-1.5707964 - view_3.horizon_rad) * squared) * squared);
     }
@@ -2234,20 +2233,56 @@ metal::float2 air_span_m(
     return metal::float2(start_4, metal::max(_e50, start_4));
 }
 
-// Place from 0 to 1 of a part of the way through the air in tables by distance, which are dense near the eye.
+// Length of the first step between the distances of a ray with an interval in the air, relative to even steps. From inside the air distances are dense near the eye, at the square of the place: 0; from above it towards the ground, where most air is, dense there: 2. Steep rays from high in the air are between.
+// Cost: no exp.
+float first_step(
+    SkyView view_9,
+    metal::float2 span_m,
+    bool meets_ground_1
+) {
+    if (view_9.height_m >= view_9.air_height_m) {
+        return meets_ground_1 ? 2.0 : 1.0;
+    }
+    if (!(meets_ground_1)) {
+        return 0.0;
+    }
+    float slant = 1.0 - metal::min(view_9.height_m / metal::max(span_m.y, 1.0), 1.0);
+    float high = metal::min((2.5 * view_9.height_m) / view_9.air_height_m, 1.0);
+    return (2.0 * high) * (1.0 - (((slant * slant) * slant) * slant));
+}
+
+// Place from 0 to 1 of a part of the way through the air among distances with a `first_step`.
 // Cost: no exp.
 float place_from_part(
-    float part
+    float part,
+    float first_step_1
 ) {
-    return metal::sqrt(part);
+    float last_step = 2.0 - first_step_1;
+    float root_5 = metal::sqrt((((1.0 - part) * first_step_1) * first_step_1) + ((part * last_step) * last_step));
+    return (2.0 * part) / metal::max(first_step_1 + root_5, 0.00000000000000000001);
 }
 
 // Inverse of `place_from_part`.
 // Cost: no exp.
 float part_from_place(
-    float place_4
+    float place_4,
+    float first_step_2
 ) {
-    return place_4 * place_4;
+    return place_4 * (first_step_2 + ((1.0 - first_step_2) * place_4));
+}
+
+// Place from 0 to 1 of a length in the air among the distances of a ray with an interval in the air.
+// Cost: no exp.
+float distance_place(
+    SkyView view_10,
+    metal::float2 span_m_1,
+    float length_m_14,
+    bool meets_ground_2
+) {
+    float part_6 = metal::clamp(length_m_14 / metal::max(span_m_1.y - span_m_1.x, 0.000001), 0.0, 1.0);
+    float _e13 = first_step(view_10, span_m_1, meets_ground_2);
+    float _e14 = place_from_part(part_6, _e13);
+    return _e14;
 }
 
 // Place from 0 to 1 of a scattering angle in a table of phase functions, dense forwards, by 1 minus the cosine.
@@ -2284,7 +2319,7 @@ metal::float4 haze_phase(
 // Radiance of the sky, or of the ground below the horizon, along a direction at four wavelengths, without the sun's disc.
 // Cost: 8 exp, 3 reads.
 metal::float4 sky_radiance(
-    SkyView view_9,
+    SkyView view_11,
     SkyScales scales,
     metal::texture2d<float, metal::access::sample> smooth_table,
     metal::texture2d<float, metal::access::sample> haze_table,
@@ -2293,11 +2328,11 @@ metal::float4 sky_radiance(
     metal::float3 direction_8
 ) {
     float _e7 = elevation_of(direction_8);
-    if (_e7 > view_9.highest_rad) {
+    if (_e7 > view_11.highest_rad) {
         return metal::float4(0.0);
     }
-    metal::float2 _e12 = uv_from_direction(view_9, direction_8);
-    float _e14 = one_minus_cos_between(direction_8, view_9.sun);
+    metal::float2 _e12 = uv_from_direction(view_11, direction_8);
+    float _e14 = one_minus_cos_between(direction_8, view_11.sun);
     metal::float4 _e15 = haze_phase(phase_table_1, linear_sampler_1, _e14);
     metal::float4 _e17 = smooth_table.sample(linear_sampler_1, _e12, metal::level(0.0));
     metal::float4 smooth_light = metal::exp(_e17) * scales.smooth_light;
@@ -2309,7 +2344,7 @@ metal::float4 sky_radiance(
 // Air between the eye and a point at a distance along a direction, at four wavelengths. The extinction table holds the mean extinction from the first air on, 1/km.
 // Cost: 12 exp, 4 reads.
 SpectralPath aerial_perspective(
-    SkyView view_10,
+    SkyView view_12,
     SkyScales scales_1,
     metal::texture3d<float, metal::access::sample> smooth_table_1,
     metal::texture3d<float, metal::access::sample> haze_table_1,
@@ -2321,11 +2356,11 @@ SpectralPath aerial_perspective(
 ) {
     bool local_17 = {};
     float _e9 = elevation_of(direction_9);
-    bool is_below_5 = _e9 < view_10.horizon_rad;
-    metal::float2 _e13 = air_span_m(view_10, direction_9.y, is_below_5);
-    float length_m_15 = metal::min(distance_m_1, _e13.y) - _e13.x;
-    if (!((length_m_15 <= 0.0))) {
-        local_17 = _e9 > view_10.highest_rad;
+    bool is_below_5 = _e9 < view_12.horizon_rad;
+    metal::float2 _e13 = air_span_m(view_12, direction_9.y, is_below_5);
+    float length_m_16 = metal::min(distance_m_1, _e13.y) - _e13.x;
+    if (!((length_m_16 <= 0.0))) {
+        local_17 = _e9 > view_12.highest_rad;
     } else {
         local_17 = true;
     }
@@ -2333,31 +2368,31 @@ SpectralPath aerial_perspective(
     if (_e26) {
         return SpectralPath {metal::float4(1.0), metal::float4(0.0)};
     }
-    float _e39 = place_from_part(metal::clamp(length_m_15 / (_e13.y - _e13.x), 0.0, 1.0));
-    float _e42 = row_coordinate(view_10, _e9, is_below_5, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
-    float _e44 = azimuth_place(direction_9, view_10.sun);
-    float _e45 = column_place(view_10, _e44);
-    float _e47 = texel_coordinate(_e45, AERIAL_AZIMUTHS);
-    float _e49 = texel_coordinate(_e39, AERIAL_DISTANCES);
-    metal::float3 uvw = metal::float3(_e47, _e42, _e49);
-    float _e52 = one_minus_cos_between(direction_9, view_10.sun);
-    metal::float4 _e53 = haze_phase(phase_table_2, linear_sampler_2, _e52);
-    metal::float4 _e56 = extinction_table.sample(linear_sampler_2, uvw.zy, metal::level(0.0));
-    metal::float4 depth_5 = _e56 * (length_m_15 * 0.001);
-    metal::float4 _e61 = smooth_table_1.sample(linear_sampler_2, uvw, metal::level(0.0));
-    metal::float4 smooth_light_1 = metal::exp(_e61) * scales_1.smooth_light;
-    metal::float4 _e66 = haze_table_1.sample(linear_sampler_2, uvw, metal::level(0.0));
-    metal::float4 haze_1 = metal::exp(_e66) * scales_1.haze;
-    metal::float3 _e71 = mean_transmittance_rgb(depth_5.xyz);
-    float _e73 = mean_transmittance(depth_5.w);
-    metal::float4 opacity_2 = depth_5 * metal::float4(_e71, _e73);
-    return SpectralPath {metal::float4(1.0) - opacity_2, (smooth_light_1 + (haze_1 * _e53)) * opacity_2};
+    float _e32 = distance_place(view_12, _e13, length_m_16, is_below_5);
+    float _e35 = row_coordinate(view_12, _e9, is_below_5, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    float _e37 = azimuth_place(direction_9, view_12.sun);
+    float _e38 = column_place(view_12, _e37);
+    float _e40 = texel_coordinate(_e38, AERIAL_AZIMUTHS);
+    float _e42 = texel_coordinate(_e32, AERIAL_DISTANCES);
+    metal::float3 uvw = metal::float3(_e40, _e35, _e42);
+    float _e45 = one_minus_cos_between(direction_9, view_12.sun);
+    metal::float4 _e46 = haze_phase(phase_table_2, linear_sampler_2, _e45);
+    metal::float4 _e49 = extinction_table.sample(linear_sampler_2, uvw.zy, metal::level(0.0));
+    metal::float4 depth_5 = _e49 * (length_m_16 * 0.001);
+    metal::float4 _e54 = smooth_table_1.sample(linear_sampler_2, uvw, metal::level(0.0));
+    metal::float4 smooth_light_1 = metal::exp(_e54) * scales_1.smooth_light;
+    metal::float4 _e59 = haze_table_1.sample(linear_sampler_2, uvw, metal::level(0.0));
+    metal::float4 haze_1 = metal::exp(_e59) * scales_1.haze;
+    metal::float3 _e64 = mean_transmittance_rgb(depth_5.xyz);
+    float _e66 = mean_transmittance(depth_5.w);
+    metal::float4 opacity_2 = depth_5 * metal::float4(_e64, _e66);
+    return SpectralPath {metal::float4(1.0) - opacity_2, (smooth_light_1 + (haze_1 * _e46)) * opacity_2};
 }
 
 // Transmittance of the air between the eye and a point at a distance along a direction, at four wavelengths: that of `aerial_perspective` alone.
 // Cost: 4 exp, 1 read.
 metal::float4 aerial_transmittance(
-    SkyView view_11,
+    SkyView view_13,
     metal::texture2d<float, metal::access::sample> extinction_table_1,
     metal::sampler linear_sampler_3,
     metal::float3 direction_10,
@@ -2365,11 +2400,11 @@ metal::float4 aerial_transmittance(
 ) {
     bool local_18 = {};
     float _e5 = elevation_of(direction_10);
-    bool is_below_6 = _e5 < view_11.horizon_rad;
-    metal::float2 _e9 = air_span_m(view_11, direction_10.y, is_below_6);
-    float length_m_16 = metal::min(distance_m_2, _e9.y) - _e9.x;
-    if (!((length_m_16 <= 0.0))) {
-        local_18 = _e5 > view_11.highest_rad;
+    bool is_below_6 = _e5 < view_13.horizon_rad;
+    metal::float2 _e9 = air_span_m(view_13, direction_10.y, is_below_6);
+    float length_m_17 = metal::min(distance_m_2, _e9.y) - _e9.x;
+    if (!((length_m_17 <= 0.0))) {
+        local_18 = _e5 > view_13.highest_rad;
     } else {
         local_18 = true;
     }
@@ -2377,12 +2412,12 @@ metal::float4 aerial_transmittance(
     if (_e22) {
         return metal::float4(1.0);
     }
-    float _e32 = place_from_part(metal::clamp(length_m_16 / (_e9.y - _e9.x), 0.0, 1.0));
-    float _e35 = row_coordinate(view_11, _e5, is_below_6, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
-    float _e37 = texel_coordinate(_e32, AERIAL_DISTANCES);
-    metal::float2 uv = metal::float2(_e37, _e35);
-    metal::float4 _e40 = extinction_table_1.sample(linear_sampler_3, uv, metal::level(0.0));
-    return metal::exp(_e40 * (length_m_16 * -0.001));
+    float _e25 = distance_place(view_13, _e9, length_m_17, is_below_6);
+    float _e28 = row_coordinate(view_13, _e5, is_below_6, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    float _e30 = texel_coordinate(_e25, AERIAL_DISTANCES);
+    metal::float2 uv = metal::float2(_e30, _e28);
+    metal::float4 _e33 = extinction_table_1.sample(linear_sampler_3, uv, metal::level(0.0));
+    return metal::exp(_e33 * (length_m_17 * -0.001));
 }
 
 // Transmittance and path radiance in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
@@ -2411,11 +2446,11 @@ float fog_row_place(
 // Texture coordinate of the rows of a direction: falling rays come first.
 // Cost: 2 exp.
 float fog_row_coordinate(
-    FogTableView view_12,
+    FogTableView view_14,
     metal::float3 direction_11
 ) {
     bool is_above = direction_11.y > 0.0;
-    float per_sine_1 = is_above ? view_12.above_per_sine : view_12.below_per_sine;
+    float per_sine_1 = is_above ? view_14.above_per_sine : view_14.below_per_sine;
     float _e10 = elevation_of(direction_11);
     float _e12 = fog_row_place(per_sine_1, metal::abs(direction_11.y), metal::abs(_e10));
     return (((is_above ? FOG_ROWS : 0.0) + 0.5) + (_e12 * 63.0)) / 128.0;
@@ -2424,10 +2459,10 @@ float fog_row_coordinate(
 // Texture coordinate in stacked tables from that in the table of the layer.
 // Cost: no exp.
 float fog_stacked_coordinate(
-    FogTableView view_13,
+    FogTableView view_15,
     float coordinate_2
 ) {
-    return (view_13.layer + coordinate_2) / view_13.layer_count;
+    return (view_15.layer + coordinate_2) / view_15.layer_count;
 }
 
 // Opacity of an optical depth: 1 minus the transmittance, without cancellation.
@@ -2442,12 +2477,12 @@ metal::float3 fog_opacity(
 // Place of a distance, 0 to 1, from the opacity and the transmittance up to there, relative to those of the whole ray to the ground or through the fog.
 // Cost: 6 exp.
 float fog_distance_place(
-    FogTableView view_14,
+    FogTableView view_16,
     float sin_elevation_10,
     metal::float3 opacity,
     metal::float3 transmittance_1
 ) {
-    metal::float3 vertical = (sin_elevation_10 > 0.0) ? view_14.depth_above : view_14.depth_below;
+    metal::float3 vertical = (sin_elevation_10 > 0.0) ? view_16.depth_above : view_16.depth_below;
     metal::float3 depth_6 = metal::min(vertical / metal::float3(metal::max(metal::abs(sin_elevation_10), 0.0000000001)), metal::float3(10000000000000000000000000.0));
     metal::float3 _e17 = fog_opacity(depth_6);
     float whole = metal::dot(_e17, metal::float3(1.0));
@@ -2460,7 +2495,7 @@ float fog_distance_place(
 // Sunlight that is scattered once with a phase function, by its index, in a stream (0, 1 or 2), per unit of opacity, before its scale: from the texture coordinates of distance, row and angle.
 // Cost: 3 exp, 2 reads.
 metal::float3 fog_stream_light(
-    FogTableView view_15,
+    FogTableView view_17,
     metal::texture3d<float, metal::access::sample> stream_table,
     metal::texture2d<float, metal::access::sample> stream_phase_table,
     metal::sampler linear_sampler_4,
@@ -2468,8 +2503,8 @@ metal::float3 fog_stream_light(
     float phase_1,
     float stream
 ) {
-    float slice = (((3.0 * phase_1) + stream) + 0.5) / (3.0 * view_15.phase_count);
-    float _e17 = fog_stacked_coordinate(view_15, slice);
+    float slice = (((3.0 * phase_1) + stream) + 0.5) / (3.0 * view_17.phase_count);
+    float _e17 = fog_stacked_coordinate(view_17, slice);
     metal::float3 uvw_1 = metal::float3(place_6.xy, _e17);
     metal::float4 logarithms = stream_table.sample(linear_sampler_4, uvw_1, metal::level(0.0));
     metal::float4 scattered_1 = stream_phase_table.sample(linear_sampler_4, metal::float2(place_6.z, slice), metal::level(0.0));
@@ -2479,7 +2514,7 @@ metal::float3 fog_stream_light(
 // A layer of fog between the eye and a point, by its optical depth on the way: extinction times `exponential_column_m`, or the column of another profile. Rays end at the ground. Of several layers, transmittances multiply and path radiances add up. A step is a phase function of the fog.
 // Cost: 14 exp, 9 exp a step, 1 read, 6 reads a step.
 PathOptics tabulated_fog(
-    FogTableView view_16,
+    FogTableView view_18,
     metal::texture3d<float, metal::access::sample> diffuse_table,
     metal::texture3d<float, metal::access::sample> stream_table_1,
     metal::texture2d<float, metal::access::sample> stream_phase_table_1,
@@ -2491,16 +2526,16 @@ PathOptics tabulated_fog(
     float phase_2 = 0.0;
     metal::float3 _e7 = fog_opacity(optical_depth_2);
     metal::float3 transmittance_3 = metal::exp(-(optical_depth_2));
-    float _e11 = azimuth_place(direction_12, view_16.sun);
+    float _e11 = azimuth_place(direction_12, view_18.sun);
     float _e13 = texel_coordinate(_e11, FOG_AZIMUTHS);
-    float _e14 = fog_row_coordinate(view_16, direction_12);
-    float _e16 = fog_distance_place(view_16, direction_12.y, _e7, transmittance_3);
+    float _e14 = fog_row_coordinate(view_18, direction_12);
+    float _e16 = fog_distance_place(view_18, direction_12.y, _e7, transmittance_3);
     float _e18 = texel_coordinate(_e16, FOG_DISTANCES);
-    float _e19 = fog_stacked_coordinate(view_16, _e18);
+    float _e19 = fog_stacked_coordinate(view_18, _e18);
     metal::float3 uvw_2 = metal::float3(_e13, _e14, _e19);
     metal::float4 _e22 = diffuse_table.sample(linear_sampler_5, uvw_2, metal::level(0.0));
     metal::float3 diffuse = _e22.xyz;
-    float _e25 = one_minus_cos_between(direction_12, view_16.sun);
+    float _e25 = one_minus_cos_between(direction_12, view_18.sun);
     float _e26 = phase_place(_e25);
     float _e28 = texel_coordinate(_e26, PHASE_ANGLES);
     metal::float3 place_10 = metal::float3(_e18, _e14, _e28);
@@ -2512,23 +2547,23 @@ PathOptics tabulated_fog(
         }
         loop_init_12 = false;
         float _e35 = phase_2;
-        if (_e35 < view_16.phase_count) {
+        if (_e35 < view_18.phase_count) {
         } else {
             break;
         }
         {
             metal::float3 _e38 = sunlit_1;
             float _e39 = phase_2;
-            metal::float3 _e41 = fog_stream_light(view_16, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e39, 0.0);
+            metal::float3 _e41 = fog_stream_light(view_18, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e39, 0.0);
             float _e42 = phase_2;
-            metal::float3 _e44 = fog_stream_light(view_16, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e42, 1.0);
+            metal::float3 _e44 = fog_stream_light(view_18, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e42, 1.0);
             float _e46 = phase_2;
-            metal::float3 _e48 = fog_stream_light(view_16, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e46, 2.0);
+            metal::float3 _e48 = fog_stream_light(view_18, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e46, 2.0);
             sunlit_1 = _e38 + ((_e41 + _e44) + _e48);
         }
     }
     metal::float3 _e57 = sunlit_1;
-    metal::float3 source_1 = (view_16.diffuse_scale * diffuse) + (view_16.sunlit_scale * metal::max(_e57, metal::float3(0.0)));
+    metal::float3 source_1 = (view_18.diffuse_scale * diffuse) + (view_18.sunlit_scale * metal::max(_e57, metal::float3(0.0)));
     return PathOptics {transmittance_3, _e7 * source_1};
 }
 
@@ -2649,13 +2684,13 @@ ArticleSky article_sky(
 metal::float3 article_source(
     ArticleSky sky,
     metal::float3 position_7,
-    metal::float3 view_17,
+    metal::float3 view_19,
     metal::float3 sun_1
 ) {
     float _e5 = article_distance_m(position_7, sun_1, ARTICLE_TOP_RADIUS_M);
     metal::float3 leaves = position_7 + (sun_1 * _e5);
     metal::float3 _e8 = article_transmittance(position_7, leaves);
-    float mu_3 = metal::dot(view_17, sun_1);
+    float mu_3 = metal::dot(view_19, sun_1);
     metal::float3 _e10 = article_sigma_rayleigh(position_7);
     float _e11 = article_rayleigh_phase(mu_3);
     metal::float3 rayleigh = _e10 * _e11;
@@ -2669,13 +2704,13 @@ metal::float3 article_source(
 // Cost: 15 exp a step; 8 steps, in each of which two marches of 8 steps take 6 of these, 456 in all.
 metal::float3 article_luminance(
     ArticleSky sky_1,
-    metal::float3 view_18,
+    metal::float3 view_20,
     metal::float3 sun_2
 ) {
     metal::float3 sum_6 = metal::float3(0.0);
     int i_13 = 0;
-    float _e6 = article_distance_m(sky_1.eye, view_18, ARTICLE_TOP_RADIUS_M);
-    metal::float3 leaves_1 = sky_1.eye + (view_18 * _e6);
+    float _e6 = article_distance_m(sky_1.eye, view_20, ARTICLE_TOP_RADIUS_M);
+    metal::float3 leaves_1 = sky_1.eye + (view_20 * _e6);
     metal::float3 ds_1 = (leaves_1 - sky_1.eye) / metal::float3(8.0);
     metal::float3 direction_15 = ds_1 / metal::float3(metal::length(ds_1));
     bool loop_init_14 = true;
@@ -2707,13 +2742,13 @@ metal::float3 article_luminance(
 // Cost: 3 exp, 3 exp a step; 8 steps.
 metal::float3 article_disc(
     ArticleSky sky_2,
-    metal::float3 view_19,
+    metal::float3 view_21,
     metal::float3 sun_3
 ) {
-    float angle = metal::acos(metal::min(metal::dot(view_19, sun_3), 1.0));
+    float angle = metal::acos(metal::min(metal::dot(view_21, sun_3), 1.0));
     float disc = 1.0 - metal::smoothstep(0.95 * sky_2.sun_radius_rad, 1.05 * sky_2.sun_radius_rad, angle);
-    float _e19 = article_distance_m(sky_2.eye, view_19, ARTICLE_TOP_RADIUS_M);
-    metal::float3 leaves_2 = sky_2.eye + (view_19 * _e19);
+    float _e19 = article_distance_m(sky_2.eye, view_21, ARTICLE_TOP_RADIUS_M);
+    metal::float3 leaves_2 = sky_2.eye + (view_21 * _e19);
     metal::float3 _e25 = article_transmittance(sky_2.eye, leaves_2);
     return (sky_2.outer_space * disc) * _e25;
 }

@@ -246,14 +246,36 @@ pub fn air_span_m(view: SkyView, sin_elevation: f32, meets_ground: bool) -> Vec2
     Vec2::new(start, end.max(start))
 }
 
-/// Place from 0 to 1 of a part of the way through the air.
-pub fn place_from_part(part: f32) -> f32 {
-    part.sqrt()
+/// Length of the first step between the distances of a ray with an interval in the air, relative to even steps: 0 where they are dense near
+/// the eye, 2 where they are dense at the end.
+pub fn first_step(view: SkyView, span_m: Vec2, meets_ground: bool) -> f32 {
+    if view.height_m >= view.air_height_m {
+        return if meets_ground { 2.0 } else { 1.0 };
+    }
+    if !meets_ground {
+        return 0.0;
+    }
+    let slant = 1.0 - (view.height_m / span_m.y.max(1.0)).min(1.0);
+    let high = (2.5 * view.height_m / view.air_height_m).min(1.0);
+    2.0 * high * (1.0 - slant.powi(4))
+}
+
+/// Place from 0 to 1 of a part of the way through the air among distances with a [`first_step`].
+pub fn place_from_part(part: f32, first_step: f32) -> f32 {
+    let last_step = 2.0 - first_step;
+    let root = ((1.0 - part) * first_step * first_step + part * last_step * last_step).sqrt();
+    2.0 * part / (first_step + root).max(1e-20)
 }
 
 /// Inverse of [`place_from_part`].
-pub fn part_from_place(place: f32) -> f32 {
-    place * place
+pub fn part_from_place(place: f32, first_step: f32) -> f32 {
+    place * (first_step + (1.0 - first_step) * place)
+}
+
+/// Place from 0 to 1 of a length in the air among the distances of a ray with an interval in the air.
+pub fn distance_place(view: SkyView, span_m: Vec2, length_m: f32, meets_ground: bool) -> f32 {
+    let part = (length_m / (span_m.y - span_m.x).max(1e-6)).clamp(0.0, 1.0);
+    place_from_part(part, first_step(view, span_m, meets_ground))
 }
 
 /// Place from 0 to 1 of a scattering angle in a table of phase functions.
@@ -328,7 +350,7 @@ pub fn aerial_perspective(
             path_radiance: Vec4::ZERO,
         };
     }
-    let place = place_from_part((length_m / (span.y - span.x)).clamp(0.0, 1.0));
+    let place = distance_place(view, span, length_m, is_below);
     let row = row_coordinate(
         view,
         elevation_rad,
@@ -370,7 +392,7 @@ pub fn aerial_transmittance(
     if length_m <= 0.0 || elevation_rad > view.highest_rad {
         return Vec4::ONE;
     }
-    let place = place_from_part((length_m / (span.y - span.x)).clamp(0.0, 1.0));
+    let place = distance_place(view, span, length_m, is_below);
     let row = row_coordinate(
         view,
         elevation_rad,

@@ -201,8 +201,8 @@ fn brightest(table: &SkyTable) -> Vec<f32> {
             .peaked
             .factors(HalfAngle::of_cosine(direction.dot(sun)));
         let scattered = light.iter().enumerate();
-        let scattered = scattered
-            .map(|(index, light)| factors.get(index / channels, index % channels) * light);
+        let scattered =
+            scattered.map(|(index, light)| factors.get(index / channels, index % channels) * light);
         (scattered.sum::<f32>(), light)
     });
     let none = (0.0, vec![0.0; channels * table.peaked.parts.len()]);

@@ -193,6 +193,43 @@ fn span(view: &[f64], sine: f64, meets_ground: bool) -> [f64; 2] {
     [start, end.max(start)]
 }
 
+/// A view, the interval in the air of a ray that meets air, and whether it meets the ground.
+fn ray(r: &mut Random) -> Vec<f32> {
+    let mut all = view_and_direction(r);
+    let elevation = all[VIEW + 1].clamp(-1.0, 1.0).asin().min(all[7] - 1e-3);
+    let below = elevation < all[6];
+    all.truncate(VIEW);
+    let exact: Vec<f64> = all.iter().copied().map(f64::from).collect();
+    let span_m = span(&exact, f64::from(elevation).sin(), below);
+    all.extend(span_m.map(|m| m as f32));
+    all.push(f32::from(below));
+    all
+}
+
+fn step_at_eye(view: &[f64], span: [f64; 2], meets_ground: bool) -> f64 {
+    let (height, top) = (view[3], view[5]);
+    match (height < top, meets_ground) {
+        (false, true) => 2.0,
+        (false, false) => 1.0,
+        (true, false) => 0.0,
+        (true, true) => {
+            let slant = 1.0 - (height / span[1].max(1.0)).min(1.0);
+            2.0 * (2.5 * height / top).min(1.0) * (1.0 - slant.powi(4))
+        }
+    }
+}
+
+/// Part of the way of a place.
+fn part(place: f64, first_step: f64) -> f64 {
+    first_step * place + (1.0 - first_step) * place * place
+}
+
+fn place_of_distance(view: &[f64], span: [f64; 2], length: f64, meets_ground: bool) -> f64 {
+    let first = step_at_eye(view, span, meets_ground);
+    let way = (length / (span[1] - span[0]).max(1e-6)).clamp(0.0, 1.0);
+    inverse(|place| part(place, first), way)
+}
+
 pub fn place_of_phase(one_minus_cos: f64) -> f64 {
     (2.0 * (0.5 * one_minus_cos).sqrt().min(1.0).asin() / PI).sqrt()
 }
@@ -266,8 +303,7 @@ fn aerial(x: &[f64]) -> Vec<f64> {
     if length <= 0.0 || elevation > view[7] {
         return [[1.0; 4], [0.0; 4]].concat();
     }
-    let place = (length / (end - start)).clamp(0.0, 1.0).sqrt();
-    let w = texel(place, 32.0);
+    let w = texel(place_of_distance(view, [start, end], length, below), 32.0);
     let v = row(view, elevation, below, AERIAL_ROWS);
     let u = texel(column(view, azimuth(direction, view)), 32.0);
     let phase = haze_phase(one_minus_cos(direction, view));
@@ -382,8 +418,18 @@ pub fn sky_tables() -> Vec<Row> {
             all.extend([elevation.sin(), f32::from(below)]);
             all
         } => |x| span(x, x[VIEW], x[VIEW + 1] != 0.0).to_vec();
-        place_from_part: |r| vec![r.or(&[0.0, 1.0], Random::unit)] => |x| vec![x[0].sqrt()];
-        part_from_place: |r| vec![r.or(&[0.0, 1.0], Random::unit)] => |x| vec![x[0] * x[0]];
+        first_step: |r| ray(r) => |x| vec![step_at_eye(x, [x[VIEW], x[VIEW + 1]], x[VIEW + 2] != 0.0)];
+        place_from_part: |r| vec![r.or(&[0.0, 1.0], Random::unit), r.or(&[0.0, 1.0, 2.0], |r| r.between(0.0, 2.0))]
+            => |x| vec![inverse(|place| part(place, x[1]), x[0])];
+        part_from_place: |r| vec![r.or(&[0.0, 1.0], Random::unit), r.or(&[0.0, 1.0, 2.0], |r| r.between(0.0, 2.0))]
+            => |x| vec![part(x[0], x[1])];
+        distance_place: |r| {
+            let mut all = ray(r);
+            let below = all.pop().expect("a ray");
+            let length_m = (all[VIEW + 1] - all[VIEW]) * r.or(&[0.0, 1.0, 1.5], Random::unit);
+            all.extend([length_m, below]);
+            all
+        } => |x| vec![place_of_distance(x, [x[VIEW], x[VIEW + 1]], x[VIEW + 2], x[VIEW + 3] != 0.0)];
         phase_place: |r| vec![r.one_minus_cos()] => |x| vec![place_of_phase(x[0])];
         one_minus_cos_from_phase_place: |r| vec![r.or(&[0.0, 1.0], Random::unit)]
             => |x| vec![2.0 * (FRAC_PI_2 * x[0] * x[0]).sin().powi(2)];
