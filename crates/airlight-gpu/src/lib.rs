@@ -59,3 +59,8 @@ pub use tone::{ToneCurve, TonePass, ToneSettings};
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+/// The examples of the book, compiled as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/src/gpu.md")]
+struct Book;

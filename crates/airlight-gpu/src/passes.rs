@@ -462,10 +462,10 @@ mod tests {
     use crate::pass::{at_once_shader, medium_shader};
     use airlight_shaders::{Cost, costs};
 
-    /// What a pixel costs at most in each pass: as the README states it.
+    /// What a pixel costs at most in each pass: as the book states it.
     #[test]
-    fn pixels_cost_what_the_readme_states() {
-        let readme = include_str!("../README.md");
+    fn pixels_cost_what_the_book_states() {
+        let book = include_str!("../../../docs/src/gpu.md");
         let of = |shader: &str, entry: &str| -> Cost {
             let all = costs(shader).unwrap();
             let named = all.into_iter().find(|(name, _)| name == entry);
@@ -476,7 +476,7 @@ mod tests {
             let at_once = of(&at_once_shader(&shader), "dim_and_add");
             let [dim, add] = ["dim", "add"].map(|entry| of(&shader, entry));
             let row = format!("| {name} | {at_once} | {dim} | {add} |");
-            assert!(readme.contains(&row), "{row}");
+            assert!(book.contains(&row), "{row}");
         }
         for (shader, entry, name) in [
             (sky_shader(), "disc", "disc"),
@@ -493,7 +493,7 @@ mod tests {
             ),
         ] {
             let row = format!("| {name} | | | {} |", of(&shader, entry));
-            assert!(readme.contains(&row), "{row}");
+            assert!(book.contains(&row), "{row}");
         }
     }
 }
