@@ -1,24 +1,24 @@
-//! `airlight shaders`: the shader functions in a shading language.
+//! `airlight shaders`: the shader functions in a shading language, or as SPIR-V.
 
 use crate::args::ShadersArgs;
 use crate::error::CliError;
 use crate::report;
 use airlight::Named;
-use airlight_shaders::{Part, translate};
+use airlight_shaders::{Part, translated_files};
 
-/// Writes the file of functions.
+/// Writes the file of functions, or the modules.
 ///
 /// # Errors
-/// [`CliError`] if the folder cannot be made or the file cannot be written.
+/// [`CliError`] if the folder cannot be made or a file cannot be written.
 pub fn run(args: &ShadersArgs) -> Result<(), CliError> {
     let parts = match args.only.is_empty() {
         true => Part::ALL,
         false => &args.only,
     };
-    let text = translate(parts, args.lang).map_err(|e| CliError::failure(e.to_string()))?;
+    let files = translated_files(parts, args.lang).map_err(|e| CliError::failure(e.to_string()))?;
     std::fs::create_dir_all(&args.output).map_err(|error| {
         CliError::failure(format!("cannot write `{}`: {error}", args.output.display()))
     })?;
-    let name = format!("airlight.{}", args.lang.extension());
-    report::write(&args.output.join(name), text)
+    let mut files = files.into_iter();
+    files.try_for_each(|file| report::write(&args.output.join(file.name), file.contents))
 }

@@ -6,7 +6,7 @@
 //! ```
 
 use airlight::Named;
-use airlight_shaders::{Language, Part, translate};
+use airlight_shaders::{Language, Part, translated_files};
 use std::path::PathBuf;
 
 #[path = "web/page.rs"]
@@ -23,9 +23,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         let folder = folder.join(language.name());
         std::fs::create_dir_all(&folder)?;
-        let file = folder.join(format!("airlight.{}", language.extension()));
-        std::fs::write(&file, translate(Part::ALL, language)?)?;
-        println!("{}", file.display());
+        for file in translated_files(Part::ALL, language)? {
+            let path = folder.join(file.name);
+            std::fs::write(&path, file.contents)?;
+            println!("{}", path.display());
+        }
     }
     let page = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/web/sky-article.html");
     std::fs::write(page, page::assembled()?)?;

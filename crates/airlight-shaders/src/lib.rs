@@ -29,11 +29,20 @@
 
 mod colour_fit;
 #[cfg(feature = "translate")]
+mod compute;
+#[cfg(feature = "translate")]
 mod cost;
 mod fog_tables;
 mod function;
+#[cfg(feature = "translate")]
+mod interface;
+#[cfg(feature = "translate")]
+mod language;
 mod part;
+mod pass;
 mod sky_tables;
+#[cfg(feature = "translate")]
+mod spirv;
 #[cfg(feature = "translate")]
 mod translate;
 pub mod twins;
@@ -41,13 +50,20 @@ mod wavelengths;
 
 pub use colour_fit::ColourFit;
 #[cfg(feature = "translate")]
+pub use compute::{ComputeEntryPoint, ComputeShader, ComputeTexture};
+#[cfg(feature = "translate")]
 pub use cost::{Cost, CostError, costs};
 pub use fog_tables::{FogTables, FogTablesError};
 pub use function::{ErrorBound, Function, functions};
+#[cfg(feature = "translate")]
+pub use language::{Language, TranslateError};
 pub use part::{Part, source, with_required};
+pub use pass::Pass;
 pub use sky_tables::{SingleScatteringTable, SkyTables, SkyTablesError};
 #[cfg(feature = "translate")]
-pub use translate::{Language, TranslateError, translate};
+pub use spirv::{SpirvModule, spirv_modules};
+#[cfg(feature = "translate")]
+pub use translate::{TranslatedFile, translate, translated_files};
 pub use wavelengths::{WAVELENGTHS_NM, wavelength_grid};
 
 /// The example of the book, run as a test.

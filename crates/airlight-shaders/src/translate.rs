@@ -1,62 +1,13 @@
 //! Translation of parts to other shading languages.
 
 use crate::function::functions;
+use crate::language::{Language, TranslateError};
 use crate::part::{Part, source, with_required};
-use airlight::named;
+use crate::spirv::spirv_modules;
 use naga::back::{glsl, hlsl, msl};
 use naga::{
     AddressSpace, Expression, GlobalVariable, Module, ResourceBinding, Span, Statement, TypeInner,
 };
-
-/// A shading language.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Language {
-    /// WGSL, the source itself.
-    Wgsl,
-    /// GLSL ES 3.00: WebGL 2.
-    GlslEs300,
-    /// GLSL 4.50.
-    Glsl450,
-    /// Godot 4's shading language, which is close to GLSL ES 3.00.
-    Godot,
-    /// HLSL, shader model 5.1.
-    Hlsl,
-    /// Metal shading language 2.0.
-    Msl,
-}
-
-named! { Language, "a shading language", [
-    ("wgsl", (Wgsl), "WGSL, the source itself"),
-    ("glsl-es300", (GlslEs300), "GLSL ES 3.00, for WebGL 2"),
-    ("glsl450", (Glsl450), "GLSL 4.50"),
-    ("godot", (Godot), "Godot 4's shading language"),
-    ("hlsl", (Hlsl), "HLSL, shader model 5.1"),
-    ("msl", (Msl), "Metal shading language 2.0"),
-] }
-
-impl Language {
-    /// Usual ending of files in this language.
-    pub fn extension(self) -> &'static str {
-        match self {
-            Self::Wgsl => "wgsl",
-            Self::GlslEs300 | Self::Glsl450 => "glsl",
-            Self::Godot => "gdshaderinc",
-            Self::Hlsl => "hlsl",
-            Self::Msl => "metal",
-        }
-    }
-}
-
-/// Error of a translation: what the translator reports.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("expected functions that {language} can express, got: {message}")]
-pub struct TranslateError {
-    /// The language.
-    pub language: Language,
-    /// The translator's report.
-    pub message: String,
-}
 
 /// Name of the entry point that keeps all functions; what it is translated to is cut off.
 const ENTRY: &str = "keeps_all_functions";
@@ -77,12 +28,17 @@ const GLOBALS: [&str; 5] = [
 /// Godot). Functions and structs keep their names, parameters may get a number; each function is preceded by its documentation.
 ///
 /// # Errors
-/// [`TranslateError`] if the language lacks something that a function uses.
+/// [`TranslateError`] if the language lacks something that a function uses, and for SPIR-V, of which [`spirv_modules`] makes modules.
 pub fn translate(parts: &[Part], language: Language) -> Result<String, TranslateError> {
     let failed = |message: String| TranslateError { language, message };
     let module = with_entry_point(parts).map_err(failed)?;
     let text = match language {
         Language::Wgsl => return Ok(source(parts)),
+        Language::Spirv => {
+            return Err(failed(
+                "functions without entry points; try `spirv_modules`".to_owned(),
+            ));
+        }
         Language::GlslEs300 => to_glsl(&module, 300),
         Language::Glsl450 => to_glsl(&module, 450),
         Language::Godot => to_glsl(&module, 300).map(|text| without_precision(&text)),
@@ -91,6 +47,44 @@ pub fn translate(parts: &[Part], language: Language) -> Result<String, Translate
     }
     .map_err(failed)?;
     Ok(documented(&without_entry_point(&text), parts))
+}
+
+/// A file of shaders.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct TranslatedFile {
+    /// Its name.
+    pub name: String,
+    /// Its bytes: a text, or SPIR-V.
+    pub contents: Vec<u8>,
+}
+
+/// The files of parts in a language, as `airlight shaders` writes them: one of functions, or in SPIR-V a module and a text of its interface
+/// for each part and its passes.
+///
+/// # Errors
+/// [`TranslateError`] if the language lacks something that a function uses.
+pub fn translated_files(
+    parts: &[Part],
+    language: Language,
+) -> Result<Vec<TranslatedFile>, TranslateError> {
+    let ending = language.extension();
+    if language.has_functions() {
+        return Ok(vec![TranslatedFile {
+            name: format!("airlight.{ending}"),
+            contents: translate(parts, language)?.into_bytes(),
+        }]);
+    }
+    let mut files = Vec::new();
+    for module in spirv_modules(parts)? {
+        let file = |ending: &str, contents| TranslatedFile {
+            name: format!("airlight-{}.{ending}", module.name),
+            contents,
+        };
+        files.push(file(ending, module.bytes()));
+        files.push(file("txt", module.interface.clone().into_bytes()));
+    }
+    Ok(files)
 }
 
 /// The parts with a fragment shader that calls every function.

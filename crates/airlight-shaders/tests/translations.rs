@@ -1,34 +1,111 @@
 //! Translations: complete, up to date, and accepted by an independent compiler where one is installed.
 
 use airlight::Named;
-use airlight_shaders::{Language, Part, functions, translate};
+use airlight_shaders::{
+    Language, Part, Pass, functions, spirv_modules, translate, translated_files,
+};
 use std::path::Path;
 use std::process::Command;
 
+/// Languages of generated files.
 fn translated() -> impl Iterator<Item = Language> {
     let all = Language::ALL.iter().copied();
     all.filter(|&language| language != Language::Wgsl)
 }
 
+/// Those of them in which functions stand alone.
+fn with_functions() -> impl Iterator<Item = Language> {
+    translated().filter(|language| language.has_functions())
+}
+
 #[test]
 fn generated_files_are_up_to_date() {
     for language in translated() {
-        let file = Path::new(env!("CARGO_MANIFEST_DIR"))
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
             .join("generated")
-            .join(language.name())
-            .join(format!("airlight.{}", language.extension()));
-        let text = std::fs::read_to_string(&file).unwrap_or_default();
-        assert!(
-            text.replace("\r\n", "\n") == translate(Part::ALL, language).unwrap(),
-            "{}: run cargo run -p airlight-shaders --example translate",
-            file.display()
-        );
+            .join(language.name());
+        let files = translated_files(Part::ALL, language).unwrap();
+        let kept = std::fs::read_dir(&folder).map_or(0, Iterator::count);
+        assert_eq!(kept, files.len(), "files in {}", folder.display());
+        for file in files {
+            let path = folder.join(file.name);
+            let mut bytes = std::fs::read(&path).unwrap_or_default();
+            if path.extension().is_none_or(|ending| ending != "spv") {
+                bytes = String::from_utf8(bytes)
+                    .unwrap()
+                    .replace("\r\n", "\n")
+                    .into();
+            }
+            assert!(
+                bytes == file.contents,
+                "{}: run cargo run -p airlight-shaders --example translate",
+                path.display()
+            );
+        }
+    }
+}
+
+/// The rules of Vulkan are stricter than those of SPIR-V: no `Linkage`, and an offset for each member of a buffer.
+#[test]
+fn vulkan_accepts_the_modules() {
+    let modules = spirv_modules(Part::ALL).unwrap();
+    assert_eq!(modules.len(), Part::ALL.len() + Pass::ALL.len());
+    for module in modules {
+        let file = std::env::temp_dir().join(format!(
+            "airlight-module-{}-{}.spv",
+            std::process::id(),
+            module.name
+        ));
+        std::fs::write(&file, module.bytes()).unwrap();
+        assert_valid(&file, &["--target-env", "vulkan1.0"]);
+    }
+}
+
+#[test]
+fn functions_alone_are_refused_in_spirv() {
+    let error = translate(&[Part::Fog], Language::Spirv).unwrap_err();
+    assert!(error.to_string().contains("spirv_modules"), "{error}");
+}
+
+#[test]
+fn each_part_has_its_module_and_its_passes() {
+    let names = |parts: &[Part]| -> Vec<&str> {
+        let modules = spirv_modules(parts).unwrap();
+        modules.iter().map(|module| module.name).collect()
+    };
+    assert_eq!(names(&[Part::Phase]), ["phase"]);
+    assert_eq!(
+        names(&[Part::Fog, Part::Dither]),
+        ["fog", "fog-pass", "dither"]
+    );
+}
+
+/// The interface as a program needs it: every entry point, descriptor and offset.
+#[test]
+fn interfaces_name_what_a_program_binds() {
+    let modules = spirv_modules(&[Part::Fog]).unwrap();
+    let [functions, pass] = [&modules[0], &modules[1]].map(|module| module.interface.as_str());
+    for line in [
+        "exponential_fog (compute, 64 x 1 x 1) 18 -> 6: fn exponential_fog(",
+        "set 0, binding 1: storage buffer, read and written: results: array<f32>",
+        "FogMedium { extinction_per_m: vec3<f32>, scattering_per_m: vec3<f32> }",
+        "PathOptics { transmittance: vec3<f32>, path_radiance: vec3<f32> }",
+    ] {
+        assert!(functions.contains(line), "{line} in\n{functions}");
+    }
+    for line in [
+        "add_fog (fragment) takes built-in Position, location 0: clip: vec2<f32>",
+        "set 0, binding 0: uniform buffer: fog: FogPass",
+        "    156  mean_cosine: f32",
+        "set 0, binding 2: sampled image, 2D, depth: depths",
+    ] {
+        assert!(pass.contains(line), "{line} in\n{pass}");
     }
 }
 
 #[test]
 fn translations_define_every_function_once_under_its_name() {
-    for language in translated() {
+    for language in with_functions() {
         for &part in Part::ALL {
             let text = translate(&[part], language).unwrap();
             for function in functions(part) {
@@ -80,16 +157,18 @@ fn glslang_accepts_the_passes() {
             "{}",
             String::from_utf8_lossy(&output.stdout)
         );
-        assert_valid(&binary);
+        assert_valid(&binary, &[]);
     }
 }
 
 /// Asks spirv-val (Debian: spirv-tools), where it is installed, for its opinion of a file, and removes that.
-fn assert_valid(binary: &Path) {
-    match Command::new("spirv-val").arg(binary).output() {
+fn assert_valid(binary: &Path, options: &[&str]) {
+    let output = Command::new("spirv-val").args(options).arg(binary).output();
+    match output {
         Ok(output) => assert!(
             output.status.success(),
-            "{}",
+            "{}: {}",
+            binary.display(),
             String::from_utf8_lossy(&output.stderr)
         ),
         Err(_) => println!("spirv-val is not installed: SPIR-V is not checked"),
@@ -145,7 +224,7 @@ fn glslang_accepts_the_translations() {
             String::from_utf8_lossy(&output.stdout)
         );
         if language == Language::Hlsl {
-            assert_valid(&binary);
+            assert_valid(&binary, &[]);
         }
     }
 }

@@ -96,7 +96,7 @@ pub enum Command {
     View(Box<ViewArgs>),
     /// Plot curves and maps as SVG or PNG: phase functions, efficiencies, spectra, transmittance, fog.
     Plot(PlotArgs),
-    /// Write functions for shaders in WGSL, GLSL, HLSL or Metal: fog, phase functions, columns.
+    /// Write functions for shaders in WGSL, GLSL, HLSL, Metal or as SPIR-V: fog, phase functions, columns.
     Shaders(ShadersArgs),
     /// List the names of atmospheres and types of haze, or describe one.
     Atmospheres(AtmospheresArgs),

@@ -392,6 +392,19 @@ fn help_and_lists_name_what_there_is() {
     );
     let glsl = std::fs::read_to_string(folder.file("web/shaders/airlight.glsl")).unwrap();
     assert!(glsl.contains("float henyey_greenstein(") && !glsl.contains("uniform_fog"));
+    succeed(&folder, "shaders --lang spirv --only fog -o vulkan");
+    let mut names: Vec<_> = std::fs::read_dir(folder.file("vulkan"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    let spirv = ["airlight-fog-pass.spv", "airlight-fog-pass.txt"];
+    assert_eq!(
+        names,
+        [&spirv[..], &["airlight-fog.spv", "airlight-fog.txt"]].concat()
+    );
+    let module = std::fs::read(folder.file("vulkan/airlight-fog-pass.spv")).unwrap();
+    assert_eq!(module[..4], 0x0723_0203_u32.to_le_bytes());
     let list = succeed(&folder, "atmospheres");
     assert!(list.lines().count() > 8 && list.contains("average"));
     assert!(list.contains("maritime-clean") && list.contains("biomass-savanna"));

@@ -1,51 +1,72 @@
 //! A Vulkan device that computes functions of rows of numbers.
 
-use crate::module;
 use crate::textures;
 use crate::vulkan;
 use airlight::Named;
-use airlight_shaders::{Part, source};
-use std::fmt::Write;
+use airlight_shaders::{ComputeEntryPoint, ComputeShader, Part, spirv_modules};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
-/// Binding of the sampler.
-const SAMPLER: u32 = 2;
-/// Binding of the first texture.
-const FIRST_TEXTURE: u32 = 3;
+/// What the shaders are handed to the device as.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Form {
+    Wgsl,
+    Spirv,
+}
 
-/// The device and the shader that holds an entry point for each function.
+/// The device and the compute shaders of all parts.
 pub struct Device {
     device: wgpu::Device,
     queue: wgpu::Queue,
-    shader: wgpu::ShaderModule,
-    module: naga::Module,
+    form: Form,
+    shaders: Vec<(ComputeShader, wgpu::ShaderModule)>,
     /// What the device is, in words.
     pub name: String,
 }
 
 impl Device {
     /// The first Vulkan device ([`vulkan::open`]).
-    pub fn new() -> Self {
+    pub fn new(form: Form) -> Self {
         let (name, device, queue) = vulkan::open();
-        let module = module::whole();
-        let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: None,
-            source: wgpu::ShaderSource::Wgsl(with_entry_points(&module).into()),
+        let shaders = Part::ALL.iter().map(|&part| {
+            let shader = ComputeShader::new(part);
+            let source = match form {
+                Form::Wgsl => wgpu::ShaderSource::Wgsl(shader.wgsl.as_str().into()),
+                Form::Spirv => {
+                    let modules = spirv_modules(&[part]).expect("modules");
+                    wgpu::ShaderSource::SpirV(modules[0].words.clone().into())
+                }
+            };
+            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: None,
+                source,
+            });
+            (shader, module)
         });
+        let shaders = shaders.collect();
         Self {
             device,
             queue,
-            shader,
-            module,
+            form,
+            shaders,
             name,
         }
     }
 
+    /// The entry point of a function, with its shader.
+    fn entry_point(&self, name: &str) -> (&ComputeShader, &ComputeEntryPoint, &wgpu::ShaderModule) {
+        let mut all = self.shaders.iter().flat_map(|(shader, module)| {
+            let entries = shader.entry_points.iter();
+            entries.map(move |entry| (shader, entry, module))
+        });
+        let named = |(_, entry, _): &(_, &ComputeEntryPoint, _)| entry.function == name;
+        all.find(named).expect("a function of the library")
+    }
+
     /// Results of a function for rows of its arguments.
     pub fn run(&self, name: &str, arguments: &[Vec<f32>]) -> Vec<Vec<f32>> {
-        let function = module::function(&self.module, name);
-        let result = function.result.as_ref().expect("a result");
-        let width = module::write(&self.module, result.ty, "").len();
+        let (shader, entry, module) = self.entry_point(name);
+        let width = entry.results;
+        assert!(arguments.iter().all(|row| row.len() == entry.arguments));
         let numbers: Vec<u8> = arguments
             .iter()
             .flatten()
@@ -77,8 +98,11 @@ impl Device {
             .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some(name),
                 layout: None,
-                module: &self.shader,
-                entry_point: Some(&format!("run_{name}")),
+                module,
+                entry_point: Some(&match self.form {
+                    Form::Wgsl => entry.name(),
+                    Form::Spirv => name.to_owned(),
+                }),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
                 cache: None,
             });
@@ -86,12 +110,13 @@ impl Device {
             binding: 1,
             resource: outputs.as_entire_binding(),
         }];
-        let views: Vec<(u32, wgpu::TextureView)> = module::textures(&self.module, function)
-            .map(|(place, name)| (place, self.texture(name)))
+        let places = entry.textures.iter();
+        let views: Vec<(u32, wgpu::TextureView)> = places
+            .map(|&place| (place as u32, self.texture(&shader.textures[place].name())))
             .collect();
         for (place, view) in &views {
             entries.push(wgpu::BindGroupEntry {
-                binding: FIRST_TEXTURE + place,
+                binding: ComputeShader::FIRST_TEXTURE + place,
                 resource: wgpu::BindingResource::TextureView(view),
             });
         }
@@ -102,7 +127,7 @@ impl Device {
         });
         if !views.is_empty() {
             entries.push(wgpu::BindGroupEntry {
-                binding: SAMPLER,
+                binding: ComputeShader::SAMPLER,
                 resource: wgpu::BindingResource::Sampler(&sampler),
             });
         }
@@ -124,7 +149,8 @@ impl Device {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             pass.set_pipeline(&pipeline);
             pass.set_bind_group(0, &group, &[]);
-            pass.dispatch_workgroups(arguments.len().div_ceil(64) as u32, 1, 1);
+            let groups = (arguments.len() as u32).div_ceil(ComputeShader::WORKGROUP_SIZE);
+            pass.dispatch_workgroups(groups, 1, 1);
         }
         encoder.copy_buffer_to_buffer(&outputs, 0, &readable, 0, bytes);
         self.queue.submit([encoder.finish()]);
@@ -176,58 +202,4 @@ impl Device {
             .create_texture_with_data(&self.queue, &descriptor, order, &bytes)
             .create_view(&wgpu::TextureViewDescriptor::default())
     }
-}
-
-/// The library with a compute shader for each function, which reads rows of arguments and writes rows of results.
-fn with_entry_points(module: &naga::Module) -> String {
-    let mut text = source(Part::ALL);
-    text.push_str(
-        "
-        @group(0) @binding(0) var<storage, read> arguments: array<f32>;
-        @group(0) @binding(1) var<storage, read_write> results: array<f32>;
-        ",
-    );
-    writeln!(
-        text,
-        "@group(0) @binding({SAMPLER}) var linear_sampler_of_all: sampler;"
-    )
-    .expect("a text");
-    for (place, name) in textures::NAMES.iter().enumerate() {
-        let dimension = textures::dimension(name);
-        writeln!(
-            text,
-            "@group(0) @binding({}) var {name}: texture_{dimension}d<f32>;",
-            FIRST_TEXTURE + place as u32
-        )
-        .expect("a text");
-    }
-    for (_, function) in module.functions.iter() {
-        let name = function.name.as_deref().expect("the name of a function");
-        let mut width = 0;
-        let values: Vec<String> = function
-            .arguments
-            .iter()
-            .map(|argument| module::argument(module, argument, "arguments[first + ", &mut width))
-            .collect();
-        let result = function.result.as_ref().expect("a result");
-        let numbers = module::write(module, result.ty, "result");
-        write!(
-            text,
-            "@compute @workgroup_size(64)
-            fn run_{name}(@builtin(global_invocation_id) id: vec3<u32>) {{
-                if id.x * {count}u >= arrayLength(&results) {{ return; }}
-                let first = id.x * {width}u;
-                let result = {name}({values});
-                let into = id.x * {count}u;
-                ",
-            count = numbers.len(),
-            values = values.join(", "),
-        )
-        .expect("a text");
-        for (k, number) in numbers.iter().enumerate() {
-            writeln!(text, "results[into + {k}u] = {number};").expect("a text");
-        }
-        text.push_str("}\n");
-    }
-    text
 }

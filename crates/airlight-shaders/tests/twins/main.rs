@@ -13,7 +13,7 @@ mod vulkan;
 
 use airlight::Named;
 use airlight_shaders::{ErrorBound, Part, functions};
-use device::Device;
+use device::{Device, Form};
 use random::Random;
 use rows::Row;
 
@@ -106,7 +106,6 @@ fn no_function_needs_a_binding_or_an_extension() {
 }
 
 #[test]
-#[cfg(feature = "translate")]
 fn stated_costs_are_those_of_the_code() {
     let costs = airlight_shaders::costs(&airlight_shaders::source(Part::ALL)).unwrap();
     let mut wrong = Vec::new();
@@ -145,13 +144,25 @@ fn twins_are_within_the_stated_errors() {
 /// Prints the differences of each function as fractions of its stated error.
 #[test]
 fn shaders_are_within_the_stated_errors() {
-    let device = Device::new();
+    compare(Form::Wgsl, COUNT);
+}
+
+/// Prints the same of the modules of SPIR-V, as read back and given to the driver.
+#[test]
+fn spirv_modules_are_within_the_stated_errors() {
+    compare(Form::Spirv, COUNT / 16);
+}
+
+/// Compares device, twin and f64 on the first inputs of each function.
+fn compare(form: Form, count: usize) {
+    let device = Device::new(form);
     println!("{}", device.name);
     println!("largest difference / stated error: device and f64, twin and f64, device and twin");
     let mut wrong = Vec::new();
     for row in rows::all() {
         let bound = bound_of(row.name);
-        let inputs = inputs_of(&row);
+        let mut inputs = inputs_of(&row);
+        inputs.truncate(count);
         let on_device = device.run(row.name, &inputs);
         let [mut exact, mut cpu, mut twin] = [Worst::new(), Worst::new(), Worst::new()];
         for (inputs, got) in inputs.iter().zip(&on_device) {

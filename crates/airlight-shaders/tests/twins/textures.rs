@@ -6,8 +6,8 @@ use glam::Vec4;
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-/// Names of all textures: that of the argument and its dimension.
-pub const NAMES: [&str; 9] = [
+/// Names of all textures, as of `ComputeTexture::name`.
+const NAMES: [&str; 9] = [
     "smooth_table_2d",
     "haze_table_2d",
     "phase_table_2d",
@@ -18,11 +18,6 @@ pub const NAMES: [&str; 9] = [
     "stream_table_3d",
     "stream_phase_table_2d",
 ];
-
-/// Dimension of a texture.
-pub fn dimension(name: &str) -> u32 {
-    if name.ends_with("3d") { 3 } else { 2 }
-}
 
 static ALL: LazyLock<HashMap<&str, Texture>> = LazyLock::new(|| {
     let made = NAMES.iter().enumerate();
