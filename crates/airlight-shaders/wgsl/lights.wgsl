@@ -2,6 +2,7 @@
 // Point, spot and sphere lights in fog: the radiance that fog scatters from a light into a ray, by single scattering, attenuated on
 // the way to the point and from there to the eye. Add it to the path radiance of the fog without the light. Positions are in
 // metres; y is the height. A light's radius should be at least 1/1000 of its distance, so that rounding of positions does not show.
+// A ray that goes through a small light, or starts at it, counts as one that passes it at its radius, so that all is finite.
 
 /// Kind of a `LocalLight`: a small light with the same intensity in all directions.
 const LIGHT_POINT: u32 = 0u;
@@ -40,7 +41,8 @@ fn point_light(position: vec3<f32>, radius_m: f32, intensity: vec3<f32>) -> Loca
     return LocalLight(position, LIGHT_POINT, intensity, radius_m, vec3<f32>(0.0), 0.0, 0.0);
 }
 
-/// A spot light, whose intensity falls between the inner and the outer angle as in glTF's `KHR_lights_punctual`.
+/// A spot light, whose intensity falls between the inner and the outer angle as in glTF's `KHR_lights_punctual`. Cosines that differ
+/// by less than 1e-6 count as 1e-6 apart.
 ///
 /// Cost: no exp. Error: 1e-7 relative.
 fn spot_light(

@@ -976,7 +976,7 @@ LocalLight point_light(vec3 position, float radius_m, vec3 intensity) {
     return LocalLight(position, LIGHT_POINT, intensity, radius_m, vec3(0.0), 0.0, 0.0);
 }
 
-// A spot light, whose intensity falls between the inner and the outer angle as in glTF's `KHR_lights_punctual`.
+// A spot light, whose intensity falls between the inner and the outer angle as in glTF's `KHR_lights_punctual`. Cosines that differ by less than 1e-6 count as 1e-6 apart.
 // Cost: no exp.
 LocalLight spot_light(vec3 position_1, float radius_m_1, vec3 intensity_1, vec3 axis, float cos_inner, float cos_outer) {
     return LocalLight(position_1, LIGHT_SPOT, intensity_1, radius_m_1, axis, cos_inner, cos_outer);

@@ -1112,7 +1112,7 @@ LocalLight point_light(float3 position, float radius_m, float3 intensity)
     return locallight;
 }
 
-// A spot light, whose intensity falls between the inner and the outer angle as in glTF's `KHR_lights_punctual`.
+// A spot light, whose intensity falls between the inner and the outer angle as in glTF's `KHR_lights_punctual`. Cosines that differ by less than 1e-6 count as 1e-6 apart.
 // Cost: no exp.
 LocalLight spot_light(float3 position_1, float radius_m_1, float3 intensity_1, float3 axis, float cos_inner, float cos_outer)
 {

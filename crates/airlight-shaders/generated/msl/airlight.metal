@@ -1156,7 +1156,7 @@ LocalLight point_light(
     return LocalLight {position, LIGHT_POINT, intensity, radius_m, metal::float3(0.0), 0.0, 0.0};
 }
 
-// A spot light, whose intensity falls between the inner and the outer angle as in glTF's `KHR_lights_punctual`.
+// A spot light, whose intensity falls between the inner and the outer angle as in glTF's `KHR_lights_punctual`. Cosines that differ by less than 1e-6 count as 1e-6 apart.
 // Cost: no exp.
 LocalLight spot_light(
     metal::float3 position_1,

@@ -81,25 +81,43 @@ fn light(r: &mut Random, kinds: &[f32]) -> Vec<f32> {
     all.extend(r.rgb(|r| r.between(0.1, 1.0)));
     all.push(r.one_of(&[0.1, 0.3]));
     if kind == SPOT {
-        let outer = r.between(0.1, 1.5);
+        // Also half of all directions, and a hard edge.
+        let outer = match r.unit() < 0.1 {
+            true => std::f32::consts::FRAC_PI_2,
+            false => r.between(0.1, 1.5),
+        };
+        let inner = match r.unit() < 0.1 {
+            true => outer,
+            false => outer * r.between(0.3, 0.9),
+        };
         all.extend(r.direction());
-        all.extend([(outer * r.between(0.3, 0.9)).cos(), outer.cos()]);
+        all.extend([inner, outer].map(|angle| angle.cos().max(0.0)));
     } else {
         all.extend([0.0; 5]);
     }
     all
 }
 
-/// Eye and direction: often at the light, or straight towards it.
+/// Eye and direction: often at the light, or straight towards or away from it; of a spot light also along and across its axis.
 fn view(r: &mut Random, light: &[f32]) -> Vec<f32> {
     let position = Vec3::from_slice(light);
-    let eye = match r.unit() < 0.1 && light[3] != SPOT {
+    let eye = match r.unit() < 0.1 {
         true => position,
         false => Vec3::from(self::position(r)),
     };
     let to_light = (position - eye).try_normalize();
     let direction = match (to_light, r.unit()) {
-        (Some(to_light), x) if x < 0.15 && light[3] != SPOT => to_light,
+        (Some(to_light), x) if x < 0.1 => to_light,
+        (Some(to_light), x) if x < 0.15 => -to_light,
+        (_, x) if x < 0.25 && light[3] == SPOT => {
+            let axis = Vec3::from_slice(&light[8..]);
+            let across = axis.cross(Vec3::from(r.direction()));
+            match (r.unit(), across.try_normalize()) {
+                (x, Some(across)) if x < 0.5 => across,
+                (x, _) if x < 0.75 => -axis,
+                _ => axis,
+            }
+        }
         (Some(to_light), x) if x < 0.5 => {
             let beside = Vec3::from(r.direction()) * 0.1;
             (to_light + beside).normalize()
@@ -309,15 +327,16 @@ fn in_cone(ray: &[f64], cos: f64) -> Vec<f64> {
         across * across - cos * cos * h * h,
     );
     let mut edges = vec![start, start + length];
-    let root = b * b - a * c;
-    if root > 0.0 {
+    // b^2 - a c; 0 at a cone of a right angle, a plane that the ray meets once.
+    let root = cos * cos * (h * h * along * along + across * across - cos * cos * h * h);
+    if root >= 0.0 {
         let q = -b - root.sqrt().copysign(b);
         edges.extend([q / a, c / q]);
     }
     edges.retain(|u| (start..=start + length).contains(u));
     edges.sort_by(f64::total_cmp);
     for pair in edges.windows(2) {
-        if inside(0.5 * (pair[0] + pair[1])) {
+        if pair[1] > pair[0] && inside(0.5 * (pair[0] + pair[1])) {
             return vec![pair[0] - start, pair[1] - start];
         }
     }
@@ -330,7 +349,10 @@ fn at_light(x: &[f64]) -> Vec<f64> {
     match light[3] as f32 {
         SPOT => {
             let cos = (x[17] + u * x[18]) / r;
-            let part = ((cos - light[12]) / (light[11] - light[12])).clamp(0.0, 1.0);
+            let part = match cos >= light[11] {
+                true => 1.0,
+                false => ((cos - light[12]) / (light[11] - light[12])).max(0.0),
+            };
             vec![part * part, r, ahead(h, u) / r]
         }
         SPHERE => {
@@ -433,6 +455,13 @@ pub fn lights() -> Vec<Row> {
         light_at: |r| {
             let mut all = ray_of(&light_and_view(r, &[POINT, SPOT, SPHERE]));
             all.push(place(r));
+            // Not at a hard edge, where light jumps.
+            let (h, u) = (all[0], all[RAY]);
+            let cos_angle = (all[17] + u * all[18]) / h.hypot(u);
+            let is_hard = all[3 + 3] == SPOT && all[14] == all[15];
+            if is_hard && (cos_angle - all[15]).abs() < 1e-4 {
+                all[14] = 0.5 * (1.0 + all[15]);
+            }
             all
         } => at_light;
         light_peak: |r| vec![mean_cosine(r)] => |x| vec![((1.0 - x[0]) / (1.0 + x[0])).min(1.0)];
@@ -494,4 +523,26 @@ pub fn lights() -> Vec<Row> {
         light_in_exponential_fog: |r| [exponential_fog(r), light_and_view(r, &[POINT, SPOT, SPHERE])].concat()
             => |x| in_fog(x, x[6], exponential(x[7], x[8]), &x[9..]);
     })
+}
+
+/// Of the inputs of each kind of light, dozens have it on the ray ahead, behind, and at the eye.
+#[test]
+fn lights_on_the_ray_and_at_the_eye_are_among_the_inputs() {
+    let mut random = Random::new(1);
+    let mut counts = [[0; 3]; 3];
+    for _ in 0..2000 {
+        let all = light_and_view(&mut random, &[POINT, SPOT, SPHERE]);
+        let [position, eye, direction] =
+            [0, LIGHT, LIGHT + 3].map(|at| Vec3::from_slice(&all[at..]));
+        let to_light = position - eye;
+        let along = to_light.normalize_or_zero().dot(direction);
+        let counts = &mut counts[all[3] as usize];
+        counts[0] += usize::from(to_light == Vec3::ZERO);
+        counts[1] += usize::from(along > 1.0 - 1e-6);
+        counts[2] += usize::from(along < 1e-6 - 1.0);
+    }
+    assert!(
+        counts.iter().flatten().all(|&count| count > 20),
+        "{counts:?}"
+    );
 }
