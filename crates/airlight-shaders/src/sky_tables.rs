@@ -79,24 +79,8 @@ impl SkyTables {
             let wavelengths_nm = grid.wavelengths_nm().to_vec();
             return Err(SkyTablesError::Wavelengths(wavelengths_nm));
         }
-        let (ground_radius_m, top_radius_m) = view.bounds_m();
-        let radius_m = view.radius_m();
         let place = Eye::new(view);
-        let coordinates = &place.coordinates;
-        let sky_view = twin::SkyView {
-            sun: view.sun().as_vec3(),
-            height_m: (radius_m - ground_radius_m) as f32,
-            ground_radius_m: ground_radius_m as f32,
-            air_height_m: (top_radius_m - ground_radius_m) as f32,
-            horizon_rad: coordinates.horizon_rad as f32,
-            highest_rad: coordinates.highest_rad as f32,
-            kink_rad: coordinates.kink_rad as f32,
-            kink_place: coordinates.kink_place as f32,
-            dense_share: coordinates.dense_share as f32,
-            dense_azimuth: coordinates.dense_azimuth as f32,
-            dense_width: coordinates.dense_width as f32,
-            even_below: coordinates.even_below as f32,
-        };
+        let sky_view = sky_view(view, &place.coordinates);
         let mut sky = sky(split, &place);
         begin_at_kink(&mut sky.1, sky_size(), &place, SKY_ROWS);
         let scales = twin::SkyScales {
@@ -216,6 +200,25 @@ impl SingleScatteringTable {
             smooth: logarithms(aerial_size(), &aerial.smooth, scale),
             scale,
         }
+    }
+}
+
+/// What the shader functions know of a view.
+fn sky_view(view: &View, coordinates: &TableCoordinates) -> twin::SkyView {
+    let (ground_radius_m, top_radius_m) = view.bounds_m();
+    twin::SkyView {
+        sun: view.sun().as_vec3(),
+        height_m: (view.radius_m() - ground_radius_m) as f32,
+        ground_radius_m: ground_radius_m as f32,
+        air_height_m: (top_radius_m - ground_radius_m) as f32,
+        horizon_rad: coordinates.horizon_rad as f32,
+        highest_rad: coordinates.highest_rad as f32,
+        kink_rad: coordinates.kink_rad as f32,
+        kink_place: coordinates.kink_place as f32,
+        dense_share: coordinates.dense_share as f32,
+        dense_azimuth: coordinates.dense_azimuth as f32,
+        dense_width: coordinates.dense_width as f32,
+        even_below: coordinates.even_below as f32,
     }
 }
 
@@ -454,4 +457,74 @@ fn rgb_weights(view: &View, fit: &ColourFit, space: RgbSpace) -> Result<[RgbWeig
         weights(&|c, k| sunlight[k][c] / total(c)),
         per_radiance(&disc),
     ])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use airlight::atmosphere::Preset;
+    use airlight::axes;
+    use airlight::sky::{Scattering, Sky, SkySettings, SunCoverage};
+    use airlight::spectrum::WavelengthGrid;
+
+    /// Views from the ground to a geostationary orbit, above and below the tops of layers, under suns by day, in twilight
+    /// and in the nadir.
+    fn views() -> Vec<View> {
+        let grid = WavelengthGrid::from_wavelengths_nm(vec![550.0]).expect("a grid");
+        let mut views = Vec::new();
+        for preset in [Preset::Average, Preset::Wildfire] {
+            for height_m in [0.0, 3e3, 1e4, 5e4, 4e5, 3.6e7] {
+                for sun_deg in [90.0, -4.0, -90.0] {
+                    let settings = SkySettings {
+                        suns: SunCoverage::near(sun_deg, height_m),
+                        scattering: Scattering::Single,
+                        ..SkySettings::default()
+                    };
+                    let air = preset.atmosphere();
+                    let sky = Sky::prepare(&air, &grid, &settings).expect("a sky");
+                    views.push(sky.view(height_m, axes::direction(200.0, sun_deg)));
+                }
+            }
+        }
+        views
+    }
+
+    /// The largest differences between the mapping of the twins and that of the library, by which the tables are filled: of elevations, rad,
+    /// and azimuths, half turns. Places are compared as what they stand for, because elevations of one place differ by a rounding of the
+    /// horizon, beside which rows are dense without limit.
+    #[test]
+    fn twins_have_the_coordinates_of_the_library() {
+        let [mut elevation_rad, mut azimuth] = [0.0_f64; 2];
+        let (mut kinks, mut dense) = (0, 0);
+        for view in views() {
+            let exact = view.table_coordinates();
+            let twin_view = sky_view(&view, &exact);
+            kinks += usize::from(exact.kink_place > 0.0);
+            dense += usize::from(exact.dense_share > 0.0);
+            for k in 0..=1000 {
+                let place = f64::from(k) / 1000.0;
+                for is_below in [false, true] {
+                    let right = exact.elevation_rad(place, is_below);
+                    let got = twin::elevation_from_row_place(twin_view, place as f32, is_below);
+                    let got_place = twin::row_place(twin_view, right as f32, is_below);
+                    let back = exact.elevation_rad(f64::from(got_place), is_below);
+                    for got in [f64::from(got), back] {
+                        elevation_rad = elevation_rad.max((got - right).abs());
+                    }
+                }
+                let right = exact.azimuth(place);
+                let got = twin::azimuth_from_column_place(twin_view, place as f32);
+                let got_place = twin::column_place(twin_view, right as f32);
+                let back = exact.azimuth(f64::from(got_place));
+                for got in [f64::from(got), back] {
+                    azimuth = azimuth.max((got - right).abs());
+                }
+            }
+        }
+        println!("elevations {elevation_rad:.1e} rad, azimuths {azimuth:.1e} half turns");
+        println!("{kinks} views above the top of a layer, {dense} with dense columns");
+        assert!(kinks >= 8 && dense >= 8, "{kinks} {dense}");
+        assert!(elevation_rad < 1e-6, "{elevation_rad:e}");
+        assert!(azimuth < 1e-6, "{azimuth:e}");
+    }
 }
