@@ -6,7 +6,7 @@ use airlight::glam::DVec3;
 use airlight::models::single_scattering::{Settings, SkyArticle, Variant};
 use airlight_image::read_picture;
 use airlight_shaders::twins::{colour::srgb_encode, tone::camera_tone};
-use airlight_shaders::{Part, source};
+use airlight_shaders::{Language, Part, source, translate};
 use glam::Vec3;
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
@@ -160,17 +160,35 @@ fn browser_draws_what_the_library_computes() {
     assert_eq!(compared, 12);
 }
 
-/// A page that compiles the WGSL of the page `/wgsl` and sends what the browser says of it.
-const COMPILE: &str = r#"<!doctype html><script>
+/// A page that compiles the WGSL of `/shader` and sends what the browser says of it.
+const COMPILE_WGSL: &str = r#"<!doctype html><script>
 (async () => {
     let text;
     try {
         const adapter = await navigator.gpu?.requestAdapter();
-        if (!adapter) throw new Error("no adapter");
+        if (!adapter) throw new Error("none");
         const device = await adapter.requestDevice();
-        const code = await (await fetch("/wgsl")).text();
+        const code = await (await fetch("/shader")).text();
         const { messages } = await device.createShaderModule({ code }).getCompilationInfo();
         text = messages.map((m) => `${m.type} ${m.lineNum}: ${m.message}`).join("\n") || "accepted";
+    } catch (error) {
+        text = error.message;
+    }
+    await fetch("/result", { method: "POST", body: text });
+})();
+</script>"#;
+
+/// The same for a fragment shader in GLSL ES 3.00.
+const COMPILE_GLSL: &str = r#"<!doctype html><script>
+(async () => {
+    let text;
+    try {
+        const gl = document.createElement("canvas").getContext("webgl2");
+        if (!gl) throw new Error("none");
+        const shader = gl.createShader(gl.FRAGMENT_SHADER);
+        gl.shaderSource(shader, await (await fetch("/shader")).text());
+        gl.compileShader(shader);
+        text = gl.getShaderParameter(shader, gl.COMPILE_STATUS) ? "accepted" : gl.getShaderInfoLog(shader);
     } catch (error) {
         text = error.message;
     }
@@ -202,20 +220,14 @@ fn request(stream: &mut TcpStream) -> (String, String) {
     }
 }
 
-/// The compiler of Chromium's WebGPU is independent of the one that the other tests use.
-#[test]
-fn browser_accepts_the_wgsl() {
-    let Some(browser) = chromium() else {
-        println!(
-            "chromium is not installed: its compiler is not asked (Debian: apt-get install chromium)"
-        );
-        return;
-    };
+/// What a browser says of a shader on a page.
+fn verdict(browser: &str, page: &str, shader: &str) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     listener.set_nonblocking(true).expect("a port");
-    let folder = Folder::new("wgsl");
-    let page = format!("http://{}/", listener.local_addr().expect("a port"));
-    let mut run = started(browser, &["--enable-unsafe-webgpu"], &folder, &page);
+    let port = listener.local_addr().expect("a port").port();
+    let folder = Folder::new(&format!("compile-{port}"));
+    let address = format!("http://127.0.0.1:{port}/");
+    let mut run = started(browser, &["--enable-unsafe-webgpu"], &folder, &address);
     let begin = Instant::now();
     let mut result = None;
     while result.is_none() && begin.elapsed() < Duration::from_secs(90) {
@@ -228,13 +240,13 @@ fn browser_accepts_the_wgsl() {
         stream.set_read_timeout(timeout).expect("a connection");
         let (first, body) = request(&mut stream);
         let (kind, text) = match first.split(' ').nth(1) {
-            Some("/") => ("text/html", COMPILE.to_owned()),
-            Some("/wgsl") => ("text/plain", source(Part::ALL)),
+            Some("/") => ("text/html", page),
+            Some("/shader") => ("text/plain", shader),
             Some("/result") => {
                 result = Some(body);
-                ("text/plain", String::new())
+                ("text/plain", "")
             }
-            _ => ("text/plain", String::new()),
+            _ => ("text/plain", ""),
         };
         let answer = format!(
             "HTTP/1.1 200 OK\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nConnection: close\r\n\r\n{text}",
@@ -245,9 +257,28 @@ fn browser_accepts_the_wgsl() {
     }
     run.kill().expect("a process");
     run.wait().expect("a process");
-    match result.as_deref() {
-        Some("no adapter") => println!("chromium has no WebGPU here: its compiler is not asked"),
-        Some(result) => assert_eq!(result, "accepted"),
-        None => panic!("{browser} has not answered after 90 s"),
+    result.unwrap_or_else(|| panic!("{browser} has not answered after 90 s"))
+}
+
+/// The compilers of Chromium's WebGPU and WebGL are independent of those that the other tests use.
+#[test]
+fn browser_accepts_all_functions() {
+    let Some(browser) = chromium() else {
+        println!(
+            "chromium is not installed: its compilers are not asked (Debian: apt-get install chromium)"
+        );
+        return;
+    };
+    let functions = translate(Part::ALL, Language::GlslEs300).expect("GLSL");
+    let main = "out vec4 colour; void main() { colour = vec4(mean_transmittance(0.5)); }";
+    let glsl = format!("#version 300 es\n{functions}\n{main}\n");
+    for (api, page, shader) in [
+        ("WebGPU", COMPILE_WGSL, source(Part::ALL)),
+        ("WebGL 2", COMPILE_GLSL, glsl),
+    ] {
+        match verdict(browser, page, &shader).as_str() {
+            "none" => println!("chromium has no {api} here: its compiler is not asked"),
+            result => assert_eq!(result, "accepted", "{api}"),
+        }
     }
 }

@@ -25,7 +25,7 @@ const PHASE_ANGLES: f32 = 1024.0;
 struct SkyView {
     /// Unit vector to the sun.
     sun: vec3<f32>,
-    /// Height of the eye above the ground, m.
+    /// Height of the eye above the ground, m, not negative: tables for an eye below the ground are made on it.
     height_m: f32,
     /// Radius of the ground, m.
     ground_radius_m: f32,

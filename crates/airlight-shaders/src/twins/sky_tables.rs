@@ -30,7 +30,7 @@ pub const PHASE_ANGLES: f32 = 1024.0;
 pub struct SkyView {
     /// Unit vector to the sun.
     pub sun: Vec3,
-    /// Height of the eye above the ground, m.
+    /// Height of the eye above the ground, m, not negative: tables for an eye below the ground are made on it.
     pub height_m: f32,
     /// Radius of the ground, m.
     pub ground_radius_m: f32,

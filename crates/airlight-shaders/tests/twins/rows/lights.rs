@@ -68,7 +68,7 @@ fn vector(x: &[f64]) -> DVec3 {
 fn position(r: &mut Random) -> [f32; 3] {
     [
         r.between(-40.0, 40.0),
-        r.or(&[1.7], |r| r.between(0.0, 30.0)),
+        r.or(&[1.7, -2.0], |r| r.between(0.0, 30.0)),
         r.between(-40.0, 40.0),
     ]
 }
