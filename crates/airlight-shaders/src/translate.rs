@@ -6,7 +6,8 @@ use crate::part::{Part, source, with_required};
 use crate::spirv::spirv_modules;
 use naga::back::{glsl, hlsl, msl};
 use naga::{
-    AddressSpace, Expression, GlobalVariable, Module, ResourceBinding, Span, Statement, TypeInner,
+    AddressSpace, Expression, GlobalVariable, MathFunction, Module, ResourceBinding, Span,
+    Statement, TypeInner,
 };
 
 /// Name of the entry point that keeps all functions; what it is translated to is cut off.
@@ -189,8 +190,57 @@ fn without_precision(text: &str) -> String {
     lines.map(|line| format!("{line}\n")).collect()
 }
 
+/// Selection by components: since HLSL 2021 a condition of `?:` is a scalar, and HLSL before that has no `select`.
+const SELECT_EACH: &str = "\
+float2 select_each(bool2 condition, float2 accept, float2 reject) {
+    return float2(condition.x ? accept.x : reject.x, condition.y ? accept.y : reject.y);
+}
+
+float3 select_each(bool3 condition, float3 accept, float3 reject) {
+    return float3(select_each(condition.xy, accept.xy, reject.xy), condition.z ? accept.z : reject.z);
+}
+
+float4 select_each(bool4 condition, float4 accept, float4 reject) {
+    return float4(select_each(condition.xyz, accept.xyz, reject.xyz), condition.w ? accept.w : reject.w);
+}
+
+";
+
+/// What HLSL calls the function that stands for selections by components while text is written: the library does not use it.
+const MARK_OF_SELECTION: (MathFunction, &str) = (MathFunction::Fma, "mad(");
+
+/// Replaces selections by components by calls of a function of three arguments.
+fn mark_selections(module: &mut Module, info: &naga::valid::ModuleInfo) {
+    let types = &module.types;
+    for (handle, function) in module.functions.iter_mut() {
+        let is_vector = |expression: naga::Handle<Expression>| {
+            let ty = info[handle][expression].ty.inner_with(types);
+            matches!(ty, TypeInner::Vector { .. })
+        };
+        for (_, expression) in function.expressions.iter_mut() {
+            if let Expression::Select {
+                condition,
+                accept,
+                reject,
+            } = *expression
+                && is_vector(condition)
+            {
+                *expression = Expression::Math {
+                    fun: MARK_OF_SELECTION.0,
+                    arg: condition,
+                    arg1: Some(accept),
+                    arg2: Some(reject),
+                    arg3: None,
+                };
+            }
+        }
+    }
+}
+
 fn to_hlsl(module: &Module) -> Result<String, String> {
     let info = validated(module)?;
+    let mut module = module.clone();
+    mark_selections(&mut module, &info);
     let options = hlsl::Options {
         // The loops of the library end by themselves, and it has no index from outside.
         force_loop_bounding: false,
@@ -199,9 +249,12 @@ fn to_hlsl(module: &Module) -> Result<String, String> {
     };
     let mut text = String::new();
     hlsl::Writer::new(&mut text, &options, &hlsl::PipelineOptions::default())
-        .write(module, &info, None)
+        .write(&module, &info, None)
         .map_err(|e| e.to_string())?;
-    Ok(text)
+    match text.contains(MARK_OF_SELECTION.1) {
+        true => Ok(SELECT_EACH.to_owned() + &text.replace(MARK_OF_SELECTION.1, "select_each(")),
+        false => Ok(text),
+    }
 }
 
 fn to_msl(module: &Module) -> Result<String, String> {

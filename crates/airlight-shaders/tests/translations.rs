@@ -122,6 +122,27 @@ fn translations_define_every_function_once_under_its_name() {
     }
 }
 
+/// Since HLSL 2021, the default of its compiler, a condition of `?:` is a scalar.
+#[test]
+fn hlsl_selects_vectors_by_components() {
+    let text = translate(Part::ALL, Language::Hlsl).unwrap();
+    assert!(text.contains("select_each((v <= (0.0031308).xxx), (12.92 * v), curved)"));
+    let vectors = text.lines().filter_map(|line| {
+        let (before, after) = line.trim().split_once("bool3 ")?;
+        before
+            .is_empty()
+            .then(|| after.split([' ', '=', ';']).next())?
+    });
+    let mut vectors: Vec<&str> = vectors.collect();
+    vectors.push(").xxx)");
+    for line in text.lines().filter(|line| line.contains(" ? ")) {
+        for condition in line.split(" ? ").map(str::trim_end) {
+            let is_vector = vectors.iter().any(|vector| condition.ends_with(vector));
+            assert!(!is_vector, "{line}");
+        }
+    }
+}
+
 /// The passes in HLSL and GLSL with the translated functions, as hosts compile them.
 #[test]
 fn glslang_accepts_the_passes() {

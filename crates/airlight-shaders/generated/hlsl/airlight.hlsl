@@ -1,5 +1,17 @@
 // Generated from the WGSL of airlight-shaders by its example `translate`: change that, not this.
 
+float2 select_each(bool2 condition, float2 accept, float2 reject) {
+    return float2(condition.x ? accept.x : reject.x, condition.y ? accept.y : reject.y);
+}
+
+float3 select_each(bool3 condition, float3 accept, float3 reject) {
+    return float3(select_each(condition.xy, accept.xy, reject.xy), condition.z ? accept.z : reject.z);
+}
+
+float4 select_each(bool4 condition, float4 accept, float4 reject) {
+    return float4(select_each(condition.xyz, accept.xyz, reject.xyz), condition.w ? accept.w : reject.w);
+}
+
 struct DropletPhase {
     float peak_one_minus_g;
     float wide_g;
@@ -1701,12 +1713,12 @@ float3 light_in_exponential_fog(ExponentialFog fog_5, LocalLight light_10, float
             }
             float _e95 = last_m;
             float _e97 = from_m_5;
-            float3 beside_light = ((light_cuts > (_e97).xxx) ? light_cuts : (_e95).xxx);
+            float3 beside_light = select_each((light_cuts > (_e97).xxx), light_cuts, (_e95).xxx);
             float _e101 = last_m;
             float3 _e103 = height_cuts;
             float3 _e104 = height_cuts;
             float _e105 = from_m_5;
-            float3 at_height = ((_e104 > (_e105).xxx) ? _e103 : (_e101).xxx);
+            float3 at_height = select_each((_e104 > (_e105).xxx), _e103, (_e101).xxx);
             float3 next = min(beside_light, at_height);
             float _e111 = last_m;
             float to_m_7 = min(min(next.x, _e111), min(next.y, next.z));
@@ -1852,7 +1864,7 @@ float3 srgb_encode(float3 linear_)
 {
     float3 v = abs(linear_);
     float3 curved = ((1.055 * pow(max(v, (0.0031308).xxx), (0.41666666).xxx)) - (0.055).xxx);
-    return (sign(linear_) * ((v <= (0.0031308).xxx) ? (12.92 * v) : curved));
+    return (sign(linear_) * select_each((v <= (0.0031308).xxx), (12.92 * v), curved));
 }
 
 // Linear components of an sRGB signal, the inverse of `srgb_encode`.
@@ -1861,7 +1873,7 @@ float3 srgb_decode(float3 signal)
 {
     float3 v_1 = abs(signal);
     float3 curved_1 = pow(((v_1 + (0.055).xxx) / (1.055).xxx), (2.4).xxx);
-    return (sign(signal) * ((v_1 <= (0.04045).xxx) ? (v_1 / (12.92).xxx) : curved_1));
+    return (sign(signal) * select_each((v_1 <= (0.04045).xxx), (v_1 / (12.92).xxx), curved_1));
 }
 
 // Luminance of linear sRGB with the rounded weights of BT.709, in the unit of its components.
@@ -2657,7 +2669,7 @@ float3 camera_response(float3 x_3, float contrast)
 {
     float3 ratio = ((0.18).xxx / max(x_3, (1e-8).xxx));
     float3 response = ((1.0).xxx / ((1.0).xxx + (4.555556 * pow(ratio, ((contrast / 0.82)).xxx))));
-    return ((x_3 <= (1.1e-8).xxx) ? (0.0).xxx : response);
+    return select_each((x_3 <= (1.1e-8).xxx), (0.0).xxx, response);
 }
 
 // Curve in the manner of a camera: contrast around middle grey, highlights that roll off to white, hue kept. `contrast` is usually 1.2, `saturation` 1 (0: grey).
@@ -2689,11 +2701,11 @@ float3 agx_response(float3 x_4)
     float3 place_11 = clamp(((stops + (10.0).xxx) / (16.5).xxx), (0.0).xxx, (1.0).xxx);
     float3 from_grey = (place_11 - (0.6060606).xxx);
     bool3 is_toe = (from_grey < (0.0).xxx);
-    float3 limit = (is_toe ? (0.5656756).xxx : (0.7151983).xxx);
+    float3 limit = select_each(is_toe, (0.5656756).xxx, (0.7151983).xxx);
     float3 u_2 = (2.4 * abs(from_grey));
     float3 bent = (u_2 / limit);
     float3 rise_2 = (u_2 / pow(((1.0).xxx + (bent * sqrt(bent))), (0.6666667).xxx));
-    float3 signal_2 = clamp(((0.4894371).xxx + (is_toe ? -(rise_2) : rise_2)), (0.0).xxx, (1.0).xxx);
+    float3 signal_2 = clamp(((0.4894371).xxx + select_each(is_toe, -(rise_2), rise_2)), (0.0).xxx, (1.0).xxx);
     return pow(signal_2, (2.4).xxx);
 }
 
