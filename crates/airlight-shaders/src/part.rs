@@ -16,6 +16,8 @@ pub enum Part {
     Columns,
     /// Fog in sunlight and ambient light.
     Fog,
+    /// Air over round ground, marched.
+    Air,
     /// Point, spot and sphere lights in fog.
     Lights,
     /// Fog with shadows.
@@ -42,6 +44,7 @@ named! { Part, "a part of the shader library", [
     ("path-optics", (PathOptics), "transmittance and path radiance of a ray segment"),
     ("columns", (Columns), "integrals of density along rays over flat or round ground"),
     ("fog", (Fog), "fog in sunlight and ambient light, by single scattering"),
+    ("air", (Air), "air of molecules, haze and ozone over round ground, marched by single scattering"),
     ("lights", (Lights), "point, spot and sphere lights in uniform and in exponential fog"),
     ("shadows", (Shadows), "fog with shadows, from visibilities that the program supplies"),
     ("colour", (Colour), "wavelengths, XYZ, linear RGB spaces, sRGB signals"),
@@ -62,6 +65,7 @@ impl Part {
             Self::PathOptics => include_str!("../wgsl/path_optics.wgsl"),
             Self::Columns => include_str!("../wgsl/columns.wgsl"),
             Self::Fog => include_str!("../wgsl/fog.wgsl"),
+            Self::Air => include_str!("../wgsl/air.wgsl"),
             Self::Lights => include_str!("../wgsl/lights.wgsl"),
             Self::Shadows => include_str!("../wgsl/shadows.wgsl"),
             Self::Colour => include_str!("../wgsl/colour.wgsl"),

@@ -40,6 +40,31 @@ struct FogLayers {
     float inverse_radius_per_m;
     FogLight light;
 };
+struct AirMedium {
+    vec3 molecules_per_m;
+    float molecules_scale_m;
+    vec3 haze_extinction_per_m;
+    float haze_scale_m;
+    vec3 haze_scattering_per_m;
+    float top_m;
+    vec3 ozone_per_m;
+    float ozone_bottom_m;
+    float ozone_top_m;
+    float inverse_radius_per_m;
+};
+struct AirLight {
+    vec3 sunlight;
+    float sin_sun;
+    float cos_to_sun;
+    float molecules_phase;
+    float haze_phase;
+};
+struct AirMarch {
+    PathOptics path;
+    float end_m;
+    vec3 depth_to_sun;
+    float clearance;
+};
 struct LocalLight {
     vec3 position;
     uint kind;
@@ -967,6 +992,143 @@ PathOptics layered_fog(FogLayers fog_2, RaySegment ray_8) {
     return PathOptics(exp(-(_e208)), _e211);
 }
 
+// No fog: what a march starts with.
+// Cost: no exp.
+PathOptics no_fog() {
+    return PathOptics(vec3(1.0), vec3(0.0));
+}
+
+// Distance of a place from 0 to 1 along a segment, m, such that steps that are even in `place` have even shares of the light of uniform fog of this optical depth along the segment: short near the eye.
+// Cost: 3 exp.
+float shadow_edge_m(float place, float length_m_8, float optical_depth_1) {
+    if ((place >= 1.0)) {
+        return length_m_8;
+    }
+    float _e5 = mean_transmittance(optical_depth_1);
+    float mean = (place * _e5);
+    float u = (mean * optical_depth_1);
+    float series_2 = (mean * (1.0 + (u * (0.5 + (u * (0.33333334 + (u * (0.25 + (u * 0.2)))))))));
+    float direct_2 = (-(log(max(((1.0 - place) + (place * exp(-(optical_depth_1)))), 1e-30))) / max(optical_depth_1, 0.05));
+    return (length_m_8 * min(((u < 0.05) ? series_2 : direct_2), 1.0));
+}
+
+// Part of a step that is in sunlight, 0 to 1, between heights above the surface of a shadow (or distances before a shadow caster) at its ends, negative in shadow and linear between: the edge of a shadow is found inside a step.
+// Cost: no exp.
+float lit_part(float from_clearance_m, float to_clearance_m) {
+    float least = min(from_clearance_m, to_clearance_m);
+    float most = max(from_clearance_m, to_clearance_m);
+    if ((least >= 0.0)) {
+        return 1.0;
+    }
+    if ((most <= 0.0)) {
+        return 0.0;
+    }
+    return (most / (most - least));
+}
+
+// Light whose sun is visible in part, 0 to 1.
+// Cost: no exp.
+FogLight with_visibility(FogLight light_6, float visibility) {
+    return FogLight((light_6.sunlight * visibility), light_6.sin_sun, light_6.ambient);
+}
+
+// A march in uniform fog with one step more, from which the sun is visible in part.
+// Cost: 6 exp.
+PathOptics shadowed_uniform_fog(PathOptics before_1, FogMedium medium_6, float from_m_2, float to_m_1, FogLight light_7, float visibility_1) {
+    FogLight _e7 = with_visibility(light_7, visibility_1);
+    PathOptics _e8 = uniform_fog(medium_6, (to_m_1 - from_m_2), _e7);
+    PathOptics _e9 = near_then_far(before_1, _e8);
+    return _e9;
+}
+
+// A march in exponential height fog over flat ground with one step more, from which the sun is visible in part. The fog above the ray attenuates sunlight.
+// Cost: 16 exp.
+PathOptics shadowed_exponential_fog(PathOptics before_2, FogMedium medium_7, float height_m_10, float sin_elevation_6, float from_m_3, float to_m_2, float reference_height_m_5, float scale_height_m_9, FogLight light_8, float visibility_2) {
+    FogLight _e13 = with_visibility(light_8, visibility_2);
+    PathOptics _e14 = exponential_fog(medium_7, (height_m_10 + (sin_elevation_6 * from_m_3)), sin_elevation_6, (to_m_2 - from_m_3), reference_height_m_5, scale_height_m_9, _e13);
+    PathOptics _e15 = near_then_far(before_2, _e14);
+    return _e15;
+}
+
+// Length of a ray in the air, m: up to the ground, the top of the air or its own end. 0 for an eye below the ground. Only a ray that grazes the ground has an error above 1 m.
+// Cost: no exp.
+float air_length_m(AirMedium air, RaySegment ray_9) {
+    vec2 _e3 = below_height(ray_9, 0.0);
+    vec2 _e5 = below_height(ray_9, air.top_m);
+    return ((_e3.y > _e3.x) ? _e3.x : _e5.y);
+}
+
+// Columns of molecules (x), haze (y) and ozone (z) along a ray, m. Only a ray that grazes an edge of the ozone has an error above 1e-2 m.
+// Cost: 18 exp.
+vec3 air_columns_m(AirMedium air_1, RaySegment ray_10) {
+    float _e4 = exponential_column_m(ray_10, 0.0, air_1.molecules_scale_m);
+    float _e7 = exponential_column_m(ray_10, 0.0, air_1.haze_scale_m);
+    float _e10 = layer_column_m(ray_10, air_1.ozone_bottom_m, air_1.ozone_top_m);
+    return vec3(_e4, _e7, _e10);
+}
+
+// Optical depth of columns of `air_columns_m`.
+// Cost: no exp.
+vec3 air_optical_depth(AirMedium air_2, vec3 columns_m) {
+    return (((air_2.molecules_per_m * columns_m.x) + (air_2.haze_extinction_per_m * columns_m.y)) + (air_2.ozone_per_m * columns_m.z));
+}
+
+// Sine of the sun's elevation after `s_m` metres of a ray, where the vertical is another than at its start.
+// Cost: no exp.
+float sin_sun_along(AirMedium air_3, RaySegment ray_11, float s_m_1, AirLight light_9) {
+    float k_1 = air_3.inverse_radius_per_m;
+    float _e15 = height_at(ray_11, s_m_1);
+    float sine_1 = (((light_9.sin_sun * (1.0 + (k_1 * ray_11.height_m))) + ((k_1 * s_m_1) * light_9.cos_to_sun)) / (1.0 + (k_1 * _e15)));
+    return clamp(sine_1, -1.0, 1.0);
+}
+
+// Clearance of the way from a height to the sun: negative if the planet hides the sun. It is the height of the lowest point of the way times `2 / R` and the squared cosine of the sun's elevation.
+// Cost: no exp.
+float sun_clearance(AirMedium air_4, float height_m_11, float sin_sun_1) {
+    float sine_2 = min(sin_sun_1, 0.0);
+    return (((((2.0 * air_4.inverse_radius_per_m) * height_m_11) * (1.0 - sine_2)) * (1.0 + sine_2)) - (sine_2 * sine_2));
+}
+
+// Optical depth from a height to the sun, or to where it sets if the planet hides it.
+// Cost: 18 exp.
+vec3 air_depth_to_sun(AirMedium air_5, float height_m_12, float sin_sun_2) {
+    float above_m = max(height_m_12, 0.0);
+    float dip = ((2.0 * above_m) * air_5.inverse_radius_per_m);
+    float sine_3 = max(sin_sun_2, -(sqrt((dip / (1.0 + dip)))));
+    RaySegment _e17 = ray_segment(above_m, sine_3, INFINITE_M, air_5.inverse_radius_per_m);
+    vec3 _e18 = air_columns_m(air_5, _e17);
+    vec3 _e19 = air_optical_depth(air_5, _e18);
+    return _e19;
+}
+
+// A march at the start of a ray.
+// Cost: 18 exp.
+AirMarch air_march(AirMedium air_6, RaySegment ray_12, AirLight light_10) {
+    vec3 _e5 = air_depth_to_sun(air_6, ray_12.height_m, light_10.sin_sun);
+    PathOptics _e6 = no_fog();
+    float _e9 = sun_clearance(air_6, ray_12.height_m, light_10.sin_sun);
+    return AirMarch(_e6, 0.0, _e5, _e9);
+}
+
+// A march with one step more, to a distance, m. From the step the sun is visible in part, 0 to 1, apart from the planet, which hides it by itself.
+// Cost: 45 exp.
+AirMarch air_march_step(AirMarch march, AirMedium air_7, RaySegment ray_13, float to_m_3, AirLight light_11, float visibility_3) {
+    RaySegment _e7 = ray_part(ray_13, march.end_m, to_m_3);
+    vec3 _e8 = air_columns_m(air_7, _e7);
+    vec3 _e9 = air_optical_depth(air_7, _e8);
+    vec3 scattered_1 = ((air_7.molecules_per_m * (_e8.x * light_11.molecules_phase)) + (air_7.haze_scattering_per_m * (_e8.y * light_11.haze_phase)));
+    float _e21 = height_at(ray_13, to_m_3);
+    float _e22 = sin_sun_along(air_7, ray_13, to_m_3, light_11);
+    vec3 _e23 = air_depth_to_sun(air_7, _e21, _e22);
+    float _e24 = sun_clearance(air_7, _e21, _e22);
+    float _e26 = lit_part(march.clearance, _e24);
+    float lit = (visibility_3 * _e26);
+    vec3 _e32 = mean_attenuated_source_rgb(march.depth_to_sun, (_e23 + _e9));
+    vec3 arriving_1 = ((light_11.sunlight * lit) * _e32);
+    PathOptics _e39 = near_then_far(march.path, PathOptics(exp(-(_e9)), (scattered_1 * arriving_1)));
+    return AirMarch(_e39, to_m_3, _e23, _e24);
+}
+
 // A point light.
 // Cost: no exp.
 LocalLight point_light(vec3 position, float radius_m, vec3 intensity) {
@@ -988,9 +1150,9 @@ LocalLight sphere_light(vec3 position_2, float radius_m_2, vec3 radiance_2) {
 
 // A segment past a light, from which it is at least `at_least_m` away.
 // Cost: no exp.
-LightRayGeometry light_ray_geometry(vec3 eye, vec3 direction, float length_m_8, vec3 light_6, float at_least_m) {
-    vec3 to_light = (light_6 - eye);
-    return LightRayGeometry(max(length(cross(to_light, direction)), at_least_m), -(dot(to_light, direction)), length_m_8);
+LightRayGeometry light_ray_geometry(vec3 eye, vec3 direction, float length_m_9, vec3 light_12, float at_least_m) {
+    vec3 to_light = (light_12 - eye);
+    return LightRayGeometry(max(length(cross(to_light, direction)), at_least_m), -(dot(to_light, direction)), length_m_9);
 }
 
 // Distance from the light at a place, m.
@@ -1024,8 +1186,8 @@ float light_excess_m(LightRayGeometry geometry) {
 // Cost: no exp.
 float light_angle(LightRayGeometry geometry_1) {
     float h_1 = geometry_1.nearest_m;
-    float u = geometry_1.start_m;
-    return atan((h_1 * geometry_1.length_m), ((h_1 * h_1) + (u * (u + geometry_1.length_m))));
+    float u_1 = geometry_1.start_m;
+    return atan((h_1 * geometry_1.length_m), ((h_1 * h_1) + (u_1 * (u_1 + geometry_1.length_m))));
 }
 
 // Radiance scattered from a point light of unit intensity by uniform fog of unit scattering coefficient that scatters equally in all directions, 1/m, without extinction: `angle / (4 pi h)` (after Macklin 2010, corrected).
@@ -1040,10 +1202,10 @@ float airlight_without_extinction(LightRayGeometry geometry_2) {
 vec2 light_gauss_node(uint i_5) {
     float places[4] = float[4](0.019855073, 0.10166676, 0.23723379, 0.40828267);
     float weights[4] = float[4](0.050614268, 0.11119052, 0.15685332, 0.18134189);
-    uint k_1 = min(i_5, (7u - min(i_5, 7u)));
-    float _e19 = places[k_1];
-    float _e21 = places[k_1];
-    float _e28 = weights[k_1];
+    uint k_2 = min(i_5, (7u - min(i_5, 7u)));
+    float _e19 = places[k_2];
+    float _e21 = places[k_2];
+    float _e28 = weights[k_2];
     return vec2(((i_5 > 3u) ? (1.0 - _e21) : _e19), _e28);
 }
 
@@ -1107,32 +1269,32 @@ vec3 airlight_isotropic(LightRayGeometry geometry_3, vec3 extinction_per_m) {
         }
     }
     float _e94 = light_distance_m(h_2, geometry_3.start_m);
-    vec3 arriving_1 = exp((-(extinction_per_m) * _e94));
+    vec3 arriving_2 = exp((-(extinction_per_m) * _e94));
     vec3 _e101 = sum;
-    return ((((0.15915494 / _e5) * arriving_1) * span_1) * _e101);
+    return ((((0.15915494 / _e5) * arriving_2) * span_1) * _e101);
 }
 
 // A point light in uniform fog that scatters equally in all directions.
 // Cost: 6 exp, 3 exp a step; 8 steps.
-vec3 point_light_in_isotropic_fog(FogMedium medium_6, LocalLight light_7, vec3 eye_1, vec3 direction_1, float length_m_9) {
-    LightRayGeometry _e7 = light_ray_geometry(eye_1, direction_1, length_m_9, light_7.position, light_7.radius_m);
-    vec3 _e12 = airlight_isotropic(_e7, medium_6.extinction_per_m);
-    return ((medium_6.scattering_per_m * light_7.intensity) * _e12);
+vec3 point_light_in_isotropic_fog(FogMedium medium_8, LocalLight light_13, vec3 eye_1, vec3 direction_1, float length_m_10) {
+    LightRayGeometry _e7 = light_ray_geometry(eye_1, direction_1, length_m_10, light_13.position, light_13.radius_m);
+    vec3 _e12 = airlight_isotropic(_e7, medium_8.extinction_per_m);
+    return ((medium_8.scattering_per_m * light_13.intensity) * _e12);
 }
 
 // A ray past a light.
 // Cost: no exp.
-LightRay light_ray(LocalLight light_8, vec3 eye_2, vec3 direction_2, float length_m_10) {
+LightRay light_ray(LocalLight light_14, vec3 eye_2, vec3 direction_2, float length_m_11) {
     LightRayGeometry geometry_4 = LightRayGeometry(0.0, 0.0, 0.0);
     bool local_12 = false;
-    LightRayGeometry _e6 = light_ray_geometry(eye_2, direction_2, length_m_10, light_8.position, light_8.radius_m);
+    LightRayGeometry _e6 = light_ray_geometry(eye_2, direction_2, length_m_11, light_14.position, light_14.radius_m);
     geometry_4 = _e6;
-    vec3 to_light_1 = (light_8.position - eye_2);
+    vec3 to_light_1 = (light_14.position - eye_2);
     float nearest_m_2 = length(cross(to_light_1, direction_2));
-    if ((light_8.kind == LIGHT_SPHERE)) {
+    if ((light_14.kind == LIGHT_SPHERE)) {
         float distance_m_3 = length(to_light_1);
-        float inside = ((light_8.radius_m - nearest_m_2) * (light_8.radius_m + nearest_m_2));
-        if ((distance_m_3 <= light_8.radius_m)) {
+        float inside = ((light_14.radius_m - nearest_m_2) * (light_14.radius_m + nearest_m_2));
+        if ((distance_m_3 <= light_14.radius_m)) {
             geometry_4.length_m = 0.0;
         } else {
             float _e26 = geometry_4.start_m;
@@ -1144,44 +1306,44 @@ LightRay light_ray(LocalLight light_8, vec3 eye_2, vec3 direction_2, float lengt
             bool _e34 = local_12;
             if (_e34) {
                 float _e42 = geometry_4.start_m;
-                float hit_m = (((distance_m_3 - light_8.radius_m) * (distance_m_3 + light_8.radius_m)) / (sqrt(inside) - _e42));
-                geometry_4.length_m = min(length_m_10, hit_m);
+                float hit_m = (((distance_m_3 - light_14.radius_m) * (distance_m_3 + light_14.radius_m)) / (sqrt(inside) - _e42));
+                geometry_4.length_m = min(length_m_11, hit_m);
             }
         }
     }
     float _e49 = geometry_4.start_m;
     vec3 closest = (-(to_light_1) - (_e49 * direction_2));
     LightRayGeometry _e52 = geometry_4;
-    return LightRay(_e52, light_8, nearest_m_2, dot(closest, light_8.axis), dot(direction_2, light_8.axis));
+    return LightRay(_e52, light_14, nearest_m_2, dot(closest, light_14.axis), dot(direction_2, light_14.axis));
 }
 
 // Interval of a ray, m from its start, in which the direction from a spot light is within a cone of this cosine of its half-angle; the whole ray for other lights, (0, 0) outside.
 // Cost: no exp.
-vec2 lit_interval(LightRay ray_9, float cos_angle) {
-    float from_m_2 = -1000000000000.0;
+vec2 lit_interval(LightRay ray_14, float cos_angle) {
+    float from_m_4 = -1000000000000.0;
     bool local_13 = false;
-    float to_m_1 = INFINITE_M;
+    float to_m_4 = INFINITE_M;
     bool local_14 = false;
-    float length_m_15 = ray_9.geometry.length_m;
-    if ((ray_9.light.kind != LIGHT_SPOT)) {
+    float length_m_15 = ray_14.geometry.length_m;
+    if ((ray_14.light.kind != LIGHT_SPOT)) {
         return vec2(0.0, length_m_15);
     }
-    float h_3 = ray_9.geometry.nearest_m;
-    float across = (ray_9.across_m / h_3);
-    float _e15 = light_distance_m(across, ray_9.along);
+    float h_3 = ray_14.geometry.nearest_m;
+    float across = (ray_14.across_m / h_3);
+    float _e15 = light_distance_m(across, ray_14.along);
     if ((cos_angle >= _e15)) {
         return vec2(0.0);
     }
-    vec2 middle = (vec2(across, ray_9.along) / vec2(_e15));
+    vec2 middle = (vec2(across, ray_14.along) / vec2(_e15));
     float width = (cos_angle / _e15);
     float sin_width = sqrt(max(((1.0 - width) * (1.0 + width)), 0.0));
     vec2 first_1 = vec2(((middle.x * width) + (middle.y * sin_width)), ((middle.y * width) - (middle.x * sin_width)));
     vec2 last_3 = vec2(((middle.x * width) - (middle.y * sin_width)), ((middle.y * width) + (middle.x * sin_width)));
     if ((first_1.x > 0.0)) {
-        from_m_2 = ((h_3 * first_1.y) / first_1.x);
+        from_m_4 = ((h_3 * first_1.y) / first_1.x);
     } else {
         if ((across <= 0.0)) {
-            local_13 = (ray_9.along >= 0.0);
+            local_13 = (ray_14.along >= 0.0);
         } else {
             local_13 = false;
         }
@@ -1191,10 +1353,10 @@ vec2 lit_interval(LightRay ray_9, float cos_angle) {
         }
     }
     if ((last_3.x > 0.0)) {
-        to_m_1 = ((h_3 * last_3.y) / last_3.x);
+        to_m_4 = ((h_3 * last_3.y) / last_3.x);
     } else {
         if ((across <= 0.0)) {
-            local_14 = (ray_9.along <= 0.0);
+            local_14 = (ray_14.along <= 0.0);
         } else {
             local_14 = false;
         }
@@ -1203,31 +1365,31 @@ vec2 lit_interval(LightRay ray_9, float cos_angle) {
             return vec2(0.0);
         }
     }
-    float _e94 = from_m_2;
-    float _e95 = to_m_1;
-    vec2 interval = clamp((vec2(_e94, _e95) - vec2(ray_9.geometry.start_m)), vec2(0.0), vec2(length_m_15));
+    float _e94 = from_m_4;
+    float _e95 = to_m_4;
+    vec2 interval = clamp((vec2(_e94, _e95) - vec2(ray_14.geometry.start_m)), vec2(0.0), vec2(length_m_15));
     return ((interval.y > interval.x) ? interval : vec2(0.0));
 }
 
 // Light at a place of a ray: its intensity there relative to `intensity` (x), times the ratio of the squared distances `geometry` and the light have; the distance to the light's surface, m (y); 1 minus the cosine of the scattering angle (z).
 // Cost: no exp.
-vec3 light_at(LightRay ray_10, float place_m_2) {
-    float h_4 = ray_10.geometry.nearest_m;
+vec3 light_at(LightRay ray_15, float place_m_2) {
+    float h_4 = ray_15.geometry.nearest_m;
     float _e4 = light_distance_m(h_4, place_m_2);
     float _e5 = light_ahead_m(h_4, place_m_2);
     float one_minus_cos_10 = (_e5 / _e4);
-    if ((ray_10.light.kind == LIGHT_SPOT)) {
-        float cos_angle_3 = ((ray_10.across_m + (place_m_2 * ray_10.along)) / _e4);
-        float range = max((ray_10.light.cos_inner - ray_10.light.cos_outer), 1e-6);
-        float part_1 = clamp(((cos_angle_3 - ray_10.light.cos_outer) / range), 0.0, 1.0);
+    if ((ray_15.light.kind == LIGHT_SPOT)) {
+        float cos_angle_3 = ((ray_15.across_m + (place_m_2 * ray_15.along)) / _e4);
+        float range = max((ray_15.light.cos_inner - ray_15.light.cos_outer), 1e-6);
+        float part_1 = clamp(((cos_angle_3 - ray_15.light.cos_outer) / range), 0.0, 1.0);
         return vec3((part_1 * part_1), _e4, one_minus_cos_10);
     }
-    if ((ray_10.light.kind == LIGHT_SPHERE)) {
-        float radius_m_4 = ray_10.light.radius_m;
-        float _e39 = light_distance_m(ray_10.nearest_m, place_m_2);
+    if ((ray_15.light.kind == LIGHT_SPHERE)) {
+        float radius_m_4 = ray_15.light.radius_m;
+        float _e39 = light_distance_m(ray_15.nearest_m, place_m_2);
         float centre_m = max(_e39, radius_m_4);
-        float sine_1 = (radius_m_4 / centre_m);
-        float closeness = (2.0 / (1.0 + sqrt(max(((1.0 - sine_1) * (1.0 + sine_1)), 0.0))));
+        float sine_4 = (radius_m_4 / centre_m);
+        float closeness = (2.0 / (1.0 + sqrt(max(((1.0 - sine_4) * (1.0 + sine_4)), 0.0))));
         return vec3(((closeness * (_e4 / centre_m)) * (_e4 / centre_m)), (centre_m - radius_m_4), min((1.0 + (place_m_2 / centre_m)), 2.0));
     }
     return vec3(1.0, _e4, one_minus_cos_10);
@@ -1241,17 +1403,17 @@ float light_peak(float mean_cosine) {
 
 // Part of a ray past a light in uniform fog, for unit intensity and unit scattering coefficient, 1/m.
 // Cost: 1 exp, 3 exp a step; 8 steps.
-vec3 light_panel_in_uniform_fog(vec3 extinction_per_m_1, float mean_cosine_1, LightRay ray_11, float from_m_3, float to_m_2) {
+vec3 light_panel_in_uniform_fog(vec3 extinction_per_m_1, float mean_cosine_1, LightRay ray_16, float from_m_5, float to_m_5) {
     vec3 sum_1 = vec3(0.0);
     uint i_8 = 0u;
-    float h_5 = ray_11.geometry.nearest_m;
-    float start_1 = (ray_11.geometry.start_m + from_m_3);
+    float h_5 = ray_16.geometry.nearest_m;
+    float start_1 = (ray_16.geometry.start_m + from_m_5);
     float _e10 = light_distance_m(h_5, start_1);
     float _e11 = light_ahead_m(h_5, start_1);
-    float least = min(extinction_per_m_1.x, min(extinction_per_m_1.y, extinction_per_m_1.z));
+    float least_1 = min(extinction_per_m_1.x, min(extinction_per_m_1.y, extinction_per_m_1.z));
     float rate = max(extinction_per_m_1.x, max(extinction_per_m_1.y, extinction_per_m_1.z));
-    float _e24 = light_excess_m(LightRayGeometry(h_5, start_1, (to_m_2 - from_m_3)));
-    float end_3 = min(_e24, (LIGHT_CUTOFF / max(least, 1e-12)));
+    float _e24 = light_excess_m(LightRayGeometry(h_5, start_1, (to_m_5 - from_m_5)));
+    float end_3 = min(_e24, (LIGHT_CUTOFF / max(least_1, 1e-12)));
     float _e30 = light_peak(mean_cosine_1);
     float _e32 = light_distance_m((_e30 * h_5), _e11);
     float _e37 = light_distance_m(1.0, ((rate * _e32) / 12.0));
@@ -1274,11 +1436,11 @@ vec3 light_panel_in_uniform_fog(vec3 extinction_per_m_1, float mean_cosine_1, Li
             vec2 _e49 = light_node(_e48, scale, _e39);
             float s = (_e49.x + _e11);
             float t_1 = ((0.5 * _e49.x) * ((_e49.x + (2.0 * _e10)) / s));
-            vec3 _e67 = light_at(ray_11, ((0.5 * (s - h_5)) * ((s + h_5) / s)));
+            vec3 _e67 = light_at(ray_16, ((0.5 * (s - h_5)) * ((s + h_5) / s)));
             float _e69 = henyey_greenstein(_e67.z, mean_cosine_1);
             float weight = ((((2.0 * _e49.y) / ((h_5 * h_5) + (s * s))) * _e67.x) * _e69);
             vec3 _e80 = sum_1;
-            sum_1 = (_e80 + (weight * exp((-(extinction_per_m_1) * ((from_m_3 + t_1) + _e67.y)))));
+            sum_1 = (_e80 + (weight * exp((-(extinction_per_m_1) * ((from_m_5 + t_1) + _e67.y)))));
         }
     }
     vec3 _e92 = sum_1;
@@ -1287,44 +1449,44 @@ vec3 light_panel_in_uniform_fog(vec3 extinction_per_m_1, float mean_cosine_1, Li
 
 // A light of any kind in uniform fog whose phase function is that of Henyey and Greenstein, of mean cosine from -0.3 to 0.95.
 // Cost: 3 exp, 9 exp a step; 8 steps, for point and sphere lights a third.
-vec3 light_in_uniform_fog(FogMedium medium_7, float mean_cosine_2, LocalLight light_9, vec3 eye_3, vec3 direction_3, float length_m_11) {
+vec3 light_in_uniform_fog(FogMedium medium_9, float mean_cosine_2, LocalLight light_15, vec3 eye_3, vec3 direction_3, float length_m_12) {
     vec3 sum_2 = vec3(0.0);
-    LightRay _e6 = light_ray(light_9, eye_3, direction_3, length_m_11);
-    vec2 _e8 = lit_interval(_e6, light_9.cos_outer);
-    vec2 _e10 = lit_interval(_e6, light_9.cos_inner);
+    LightRay _e6 = light_ray(light_15, eye_3, direction_3, length_m_12);
+    vec2 _e8 = lit_interval(_e6, light_15.cos_outer);
+    vec2 _e10 = lit_interval(_e6, light_15.cos_inner);
     vec2 inner_1 = clamp(_e10, vec2(_e8.x), vec2(_e8.y));
     if ((inner_1.x > _e8.x)) {
         vec3 _e22 = sum_2;
-        vec3 _e26 = light_panel_in_uniform_fog(medium_7.extinction_per_m, mean_cosine_2, _e6, _e8.x, inner_1.x);
+        vec3 _e26 = light_panel_in_uniform_fog(medium_9.extinction_per_m, mean_cosine_2, _e6, _e8.x, inner_1.x);
         sum_2 = (_e22 + _e26);
     }
     if ((inner_1.y > inner_1.x)) {
         vec3 _e31 = sum_2;
-        vec3 _e35 = light_panel_in_uniform_fog(medium_7.extinction_per_m, mean_cosine_2, _e6, inner_1.x, inner_1.y);
+        vec3 _e35 = light_panel_in_uniform_fog(medium_9.extinction_per_m, mean_cosine_2, _e6, inner_1.x, inner_1.y);
         sum_2 = (_e31 + _e35);
     }
     if ((_e8.y > inner_1.y)) {
         vec3 _e40 = sum_2;
-        vec3 _e44 = light_panel_in_uniform_fog(medium_7.extinction_per_m, mean_cosine_2, _e6, inner_1.y, _e8.y);
+        vec3 _e44 = light_panel_in_uniform_fog(medium_9.extinction_per_m, mean_cosine_2, _e6, inner_1.y, _e8.y);
         sum_2 = (_e40 + _e44);
     }
     vec3 _e49 = sum_2;
-    return ((medium_7.scattering_per_m * light_9.intensity) * _e49);
+    return ((medium_9.scattering_per_m * light_15.intensity) * _e49);
 }
 
 // Column from the eye to a distance along a ray and from there to a light, m.
 // Cost: 4 exp.
-float column_by_light_m(ExponentialFog fog_3, float eye_height_m, float sin_elevation_6, float distance_m, float light_height_m, float to_centre_m, float to_light_m) {
-    float height_m_11 = (eye_height_m + (sin_elevation_6 * distance_m));
-    float sine_2 = ((light_height_m - height_m_11) / max(to_centre_m, 1e-6));
-    float _e15 = flat_exponential_column_m(eye_height_m, sin_elevation_6, distance_m, fog_3.reference_height_m, fog_3.scale_height_m);
-    float _e18 = flat_exponential_column_m(height_m_11, sine_2, to_light_m, fog_3.reference_height_m, fog_3.scale_height_m);
+float column_by_light_m(ExponentialFog fog_3, float eye_height_m, float sin_elevation_7, float distance_m, float light_height_m, float to_centre_m, float to_light_m) {
+    float height_m_13 = (eye_height_m + (sin_elevation_7 * distance_m));
+    float sine_5 = ((light_height_m - height_m_13) / max(to_centre_m, 1e-6));
+    float _e15 = flat_exponential_column_m(eye_height_m, sin_elevation_7, distance_m, fog_3.reference_height_m, fog_3.scale_height_m);
+    float _e18 = flat_exponential_column_m(height_m_13, sine_5, to_light_m, fog_3.reference_height_m, fog_3.scale_height_m);
     return (_e15 + _e18);
 }
 
 // Part of a ray past a light in exponential height fog, for unit intensity and unit scattering coefficient, 1/m.
 // Cost: 5 exp, 12 exp a step; 8 steps of 8, and 1 to 8 of 4.
-vec3 light_panel_in_exponential_fog(ExponentialFog fog_4, float eye_height_m_1, float sin_elevation_7, LightRay ray_12, float from_m_4, float to_m_3) {
+vec3 light_panel_in_exponential_fog(ExponentialFog fog_4, float eye_height_m_1, float sin_elevation_8, LightRay ray_17, float from_m_6, float to_m_6) {
     float end = 0.0;
     float reached = 0.0;
     uint i_9 = 0u;
@@ -1334,16 +1496,16 @@ vec3 light_panel_in_exponential_fog(ExponentialFog fog_4, float eye_height_m_1, 
     float anchor = 0.0;
     vec3 sum_3 = vec3(0.0);
     uint i_10 = 0u;
-    float h_6 = ray_12.geometry.nearest_m;
-    float start_2 = (ray_12.geometry.start_m + from_m_4);
+    float h_6 = ray_17.geometry.nearest_m;
+    float start_2 = (ray_17.geometry.start_m + from_m_6);
     vec3 extinction = fog_4.medium.extinction_per_m;
-    float least_1 = max(min(extinction.x, min(extinction.y, extinction.z)), 1e-12);
-    float most = max(extinction.x, max(extinction.y, extinction.z));
-    float light_height_m_1 = ray_12.light.position.y;
+    float least_2 = max(min(extinction.x, min(extinction.y, extinction.z)), 1e-12);
+    float most_1 = max(extinction.x, max(extinction.y, extinction.z));
+    float light_height_m_1 = ray_17.light.position.y;
     float _e28 = light_distance_m(h_6, start_2);
     float _e29 = light_ahead_m(h_6, start_2);
-    float _e32 = light_excess_m(LightRayGeometry(h_6, start_2, (to_m_3 - from_m_4)));
-    float _e33 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_7, from_m_4, light_height_m_1, _e28, _e28);
+    float _e32 = light_excess_m(LightRayGeometry(h_6, start_2, (to_m_6 - from_m_6)));
+    float _e33 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_8, from_m_6, light_height_m_1, _e28, _e28);
     end = _e32;
     bool loop_init_8 = true;
     while(true) {
@@ -1363,8 +1525,8 @@ vec3 light_panel_in_exponential_fog(ExponentialFog fog_4, float eye_height_m_1, 
             float _e49 = end;
             float t_2 = ((0.5 * _e42) * ((_e45 + (2.0 * _e28)) / (_e49 + _e29)));
             float _e54 = light_distance_m(h_6, (start_2 + t_2));
-            float _e56 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_7, (from_m_4 + t_2), light_height_m_1, _e54, _e54);
-            reached = (least_1 * (_e56 - _e33));
+            float _e56 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_8, (from_m_6 + t_2), light_height_m_1, _e54, _e54);
+            reached = (least_2 * (_e56 - _e33));
             float _e59 = reached;
             if ((_e59 <= 25.334)) {
                 break;
@@ -1376,22 +1538,22 @@ vec3 light_panel_in_exponential_fog(ExponentialFog fog_4, float eye_height_m_1, 
     }
     float _e73 = reached;
     float _e74 = end;
-    float rate_1 = (max((_e73 / max(_e74, 1e-30)), 0.0) * (most / least_1));
-    if (((start_2 + (to_m_3 - from_m_4)) <= 0.0)) {
+    float rate_1 = (max((_e73 / max(_e74, 1e-30)), 0.0) * (most_1 / least_2));
+    if (((start_2 + (to_m_6 - from_m_6)) <= 0.0)) {
         float _e88 = end;
         local_15 = ((rate_1 * _e88) < 4.0);
     } else {
         local_15 = false;
     }
     bool outwards = local_15;
-    origin_m = from_m_4;
+    origin_m = from_m_6;
     anchor = start_2;
     if (outwards) {
         float _e98 = end;
         float _e101 = end;
         float _e105 = end;
-        float reach = min(((0.5 * _e98) * ((_e101 + (2.0 * _e28)) / (_e105 + _e29))), (to_m_3 - from_m_4));
-        origin_m = (from_m_4 + reach);
+        float reach = min(((0.5 * _e98) * ((_e101 + (2.0 * _e28)) / (_e105 + _e29))), (to_m_6 - from_m_6));
+        origin_m = (from_m_6 + reach);
         forward = -1.0;
         anchor = -((start_2 + reach));
         float _e115 = anchor;
@@ -1429,10 +1591,10 @@ vec3 light_panel_in_exponential_fog(ExponentialFog fog_4, float eye_height_m_1, 
             float t_3 = max((_e150 + (((_e151 * 0.5) * _e147.x) * ((_e147.x + (2.0 * _e119)) / s_1))), 0.0);
             float _e165 = forward;
             float place_8 = (((_e165 * 0.5) * (s_1 - h_6)) * ((s_1 + h_6) / s_1));
-            vec3 _e173 = light_at(ray_12, place_8);
-            float centre_m_1 = ((ray_12.light.kind == LIGHT_SPHERE) ? (_e173.y + ray_12.light.radius_m) : _e173.y);
-            float _e185 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_7, t_3, light_height_m_1, centre_m_1, _e173.y);
-            float _e192 = decayed((((eye_height_m_1 + (sin_elevation_7 * t_3)) - fog_4.reference_height_m) / fog_4.scale_height_m));
+            vec3 _e173 = light_at(ray_17, place_8);
+            float centre_m_1 = ((ray_17.light.kind == LIGHT_SPHERE) ? (_e173.y + ray_17.light.radius_m) : _e173.y);
+            float _e185 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_8, t_3, light_height_m_1, centre_m_1, _e173.y);
+            float _e192 = decayed((((eye_height_m_1 + (sin_elevation_8 * t_3)) - fog_4.reference_height_m) / fog_4.scale_height_m));
             float _e195 = henyey_greenstein(_e173.z, fog_4.mean_cosine);
             float weight_1 = (((((2.0 * _e147.y) / ((h_6 * h_6) + (s_1 * s_1))) * _e173.x) * _e195) * _e192);
             vec3 _e207 = sum_3;
@@ -1445,25 +1607,25 @@ vec3 light_panel_in_exponential_fog(ExponentialFog fog_4, float eye_height_m_1, 
 
 // A light of any kind in exponential height fog over flat ground.
 // Cost: 2 exp, 17 exp a step; 1 to 6 steps of 73 to 101.
-vec3 light_in_exponential_fog(ExponentialFog fog_5, LocalLight light_10, vec3 eye_4, vec3 direction_4, float length_m_12) {
+vec3 light_in_exponential_fog(ExponentialFog fog_5, LocalLight light_16, vec3 eye_4, vec3 direction_4, float length_m_13) {
     float last_m = 0.0;
     float floor_ = 0.0;
     vec3 height_cuts = vec3(0.0);
     vec3 sum_4 = vec3(0.0);
-    float from_m_5 = 0.0;
+    float from_m_7 = 0.0;
     uint i_11 = 0u;
-    LightRay _e5 = light_ray(light_10, eye_4, direction_4, length_m_12);
-    vec2 _e7 = lit_interval(_e5, light_10.cos_outer);
-    vec2 _e9 = lit_interval(_e5, light_10.cos_inner);
+    LightRay _e5 = light_ray(light_16, eye_4, direction_4, length_m_13);
+    vec2 _e7 = lit_interval(_e5, light_16.cos_outer);
+    vec2 _e9 = lit_interval(_e5, light_16.cos_inner);
     last_m = _e7.y;
     float rise_1 = (direction_4.y / fog_5.scale_height_m);
     float start_3 = ((eye_4.y - fog_5.reference_height_m) / fog_5.scale_height_m);
     floor_ = (start_3 + min((rise_1 * _e5.geometry.length_m), 0.0));
     if ((rise_1 < 0.0)) {
         vec3 extinction_1 = fog_5.medium.extinction_per_m;
-        float least_2 = max(min(extinction_1.x, min(extinction_1.y, extinction_1.z)), 1e-12);
+        float least_3 = max(min(extinction_1.x, min(extinction_1.y, extinction_1.z)), 1e-12);
         float _e38 = decayed(start_3);
-        float dark = -(log((_e38 + ((90.0 * -(rise_1)) / least_2))));
+        float dark = -(log((_e38 + ((90.0 * -(rise_1)) / least_3))));
         float _e46 = floor_;
         if ((dark > _e46)) {
             floor_ = dark;
@@ -1483,7 +1645,7 @@ vec3 light_in_exponential_fog(ExponentialFog fog_5, LocalLight light_10, vec3 ey
             last_m = min(_e76, max(_e78, 0.0));
         }
     }
-    from_m_5 = _e7.x;
+    from_m_7 = _e7.x;
     bool loop_init_10 = true;
     while(true) {
         if (!loop_init_10) {
@@ -1497,89 +1659,31 @@ vec3 light_in_exponential_fog(ExponentialFog fog_5, LocalLight light_10, vec3 ey
             break;
         }
         {
-            float _e92 = from_m_5;
+            float _e92 = from_m_7;
             float _e93 = last_m;
             if ((_e92 >= _e93)) {
                 break;
             }
             float _e95 = last_m;
-            float _e97 = from_m_5;
+            float _e97 = from_m_7;
             vec3 beside_light = mix(vec3(_e95), light_cuts, greaterThan(light_cuts, vec3(_e97)));
             float _e101 = last_m;
             vec3 _e103 = height_cuts;
             vec3 _e104 = height_cuts;
-            float _e105 = from_m_5;
+            float _e105 = from_m_7;
             vec3 at_height = mix(vec3(_e101), _e103, greaterThan(_e104, vec3(_e105)));
             vec3 next = min(beside_light, at_height);
             float _e111 = last_m;
-            float to_m_7 = min(min(next.x, _e111), min(next.y, next.z));
+            float to_m_8 = min(min(next.x, _e111), min(next.y, next.z));
             vec3 _e117 = sum_4;
-            float _e120 = from_m_5;
-            vec3 _e121 = light_panel_in_exponential_fog(fog_5, eye_4.y, direction_4.y, _e5, _e120, to_m_7);
+            float _e120 = from_m_7;
+            vec3 _e121 = light_panel_in_exponential_fog(fog_5, eye_4.y, direction_4.y, _e5, _e120, to_m_8);
             sum_4 = (_e117 + _e121);
-            from_m_5 = to_m_7;
+            from_m_7 = to_m_8;
         }
     }
     vec3 _e130 = sum_4;
-    return ((fog_5.medium.scattering_per_m * light_10.intensity) * _e130);
-}
-
-// No fog: what a march starts with.
-// Cost: no exp.
-PathOptics no_fog() {
-    return PathOptics(vec3(1.0), vec3(0.0));
-}
-
-// Distance of a place from 0 to 1 along a segment, m, such that steps that are even in `place` have even shares of the light of uniform fog of this optical depth along the segment: short near the eye.
-// Cost: 3 exp.
-float shadow_edge_m(float place, float length_m_13, float optical_depth_1) {
-    if ((place >= 1.0)) {
-        return length_m_13;
-    }
-    float _e5 = mean_transmittance(optical_depth_1);
-    float mean = (place * _e5);
-    float u_1 = (mean * optical_depth_1);
-    float series_2 = (mean * (1.0 + (u_1 * (0.5 + (u_1 * (0.33333334 + (u_1 * (0.25 + (u_1 * 0.2)))))))));
-    float direct_2 = (-(log(max(((1.0 - place) + (place * exp(-(optical_depth_1)))), 1e-30))) / max(optical_depth_1, 0.05));
-    return (length_m_13 * min(((u_1 < 0.05) ? series_2 : direct_2), 1.0));
-}
-
-// Part of a step that is in sunlight, 0 to 1, between heights above the surface of a shadow (or distances before a shadow caster) at its ends, negative in shadow and linear between: the edge of a shadow is found inside a step.
-// Cost: no exp.
-float lit_part(float from_clearance_m, float to_clearance_m) {
-    float least_3 = min(from_clearance_m, to_clearance_m);
-    float most_1 = max(from_clearance_m, to_clearance_m);
-    if ((least_3 >= 0.0)) {
-        return 1.0;
-    }
-    if ((most_1 <= 0.0)) {
-        return 0.0;
-    }
-    return (most_1 / (most_1 - least_3));
-}
-
-// Light whose sun is visible in part, 0 to 1.
-// Cost: no exp.
-FogLight with_visibility(FogLight light_11, float visibility) {
-    return FogLight((light_11.sunlight * visibility), light_11.sin_sun, light_11.ambient);
-}
-
-// A march in uniform fog with one step more, from which the sun is visible in part.
-// Cost: 6 exp.
-PathOptics shadowed_uniform_fog(PathOptics before_1, FogMedium medium_8, float from_m_6, float to_m_4, FogLight light_12, float visibility_1) {
-    FogLight _e7 = with_visibility(light_12, visibility_1);
-    PathOptics _e8 = uniform_fog(medium_8, (to_m_4 - from_m_6), _e7);
-    PathOptics _e9 = near_then_far(before_1, _e8);
-    return _e9;
-}
-
-// A march in exponential height fog over flat ground with one step more, from which the sun is visible in part. The fog above the ray attenuates sunlight.
-// Cost: 16 exp.
-PathOptics shadowed_exponential_fog(PathOptics before_2, FogMedium medium_9, float height_m_10, float sin_elevation_8, float from_m_7, float to_m_5, float reference_height_m_5, float scale_height_m_9, FogLight light_13, float visibility_2) {
-    FogLight _e13 = with_visibility(light_13, visibility_2);
-    PathOptics _e14 = exponential_fog(medium_9, (height_m_10 + (sin_elevation_8 * from_m_7)), sin_elevation_8, (to_m_5 - from_m_7), reference_height_m_5, scale_height_m_9, _e13);
-    PathOptics _e15 = near_then_far(before_2, _e14);
-    return _e15;
+    return ((fog_5.medium.scattering_per_m * light_16.intensity) * _e130);
 }
 
 // Red, green and blue of a radiance at four wavelengths.
@@ -1779,8 +1883,8 @@ float elevation_from_row_place(SkyView view_3, float place_3, bool is_below_1) {
         return (view_3.horizon_rad + (((-1.5707964 - view_3.horizon_rad) * squared) * squared));
     }
     if ((place_3 < view_3.kink_place)) {
-        float sine_3 = sin(((1.5707964 * place_3) / view_3.kink_place));
-        return (view_3.horizon_rad + (((view_3.kink_rad - view_3.horizon_rad) * sine_3) * sine_3));
+        float sine_6 = sin(((1.5707964 * place_3) / view_3.kink_place));
+        return (view_3.horizon_rad + (((view_3.kink_rad - view_3.horizon_rad) * sine_6) * sine_6));
     }
     float part_5 = ((place_3 - view_3.kink_place) / (1.0 - view_3.kink_place));
     return (view_3.kink_rad + (((view_3.highest_rad - view_3.kink_rad) * part_5) * part_5));
@@ -2053,8 +2157,8 @@ vec3 fog_stream_light(FogTableView view_17, sampler3D stream_table, sampler2D st
     float _e17 = fog_stacked_coordinate(view_17, slice);
     vec3 uvw_1 = vec3(place_6.xy, _e17);
     vec4 logarithms = textureLod(stream_table, vec3(uvw_1), 0.0);
-    vec4 scattered_1 = textureLod(stream_phase_table, vec2(vec2(place_6.z, slice)), 0.0);
-    return (exp(logarithms.xyz) * scattered_1.xyz);
+    vec4 scattered_2 = textureLod(stream_phase_table, vec2(vec2(place_6.z, slice)), 0.0);
+    return (exp(logarithms.xyz) * scattered_2.xyz);
 }
 
 // A layer of fog between the eye and a point, by its optical depth on the way: extinction times `exponential_column_m`, or the column of another profile. Rays end at the ground. Of several layers, transmittances multiply and path radiances add up. A step is a phase function of the fog.
@@ -2108,22 +2212,22 @@ PathOptics tabulated_fog(FogTableView view_18, sampler3D diffuse_table, sampler3
 // Scattering by molecules, 1/m.
 // Cost: 1 exp.
 vec3 article_sigma_rayleigh(vec3 position_3) {
-    float height_m_12 = (length(position_3) - ARTICLE_PLANET_RADIUS_M);
-    return (vec3(5.8e-6, 1.35e-5, 3.3099997e-5) * exp((-(height_m_12) / ARTICLE_RAYLEIGH_SCALE_M)));
+    float height_m_14 = (length(position_3) - ARTICLE_PLANET_RADIUS_M);
+    return (vec3(5.8e-6, 1.35e-5, 3.3099997e-5) * exp((-(height_m_14) / ARTICLE_RAYLEIGH_SCALE_M)));
 }
 
 // Scattering by haze, 1/m.
 // Cost: 1 exp.
 vec3 article_sigma_mie(vec3 position_4) {
-    float height_m_13 = (length(position_4) - ARTICLE_PLANET_RADIUS_M);
-    return (vec3(2.1e-5, 2.1e-5, 2.1e-5) * exp((-(height_m_13) / ARTICLE_MIE_SCALE_M)));
+    float height_m_15 = (length(position_4) - ARTICLE_PLANET_RADIUS_M);
+    return (vec3(2.1e-5, 2.1e-5, 2.1e-5) * exp((-(height_m_15) / ARTICLE_MIE_SCALE_M)));
 }
 
 // Absorption by ozone, 1/m.
 // Cost: 1 exp.
 vec3 article_sigma_ozone(vec3 position_5) {
-    float height_m_14 = (length(position_5) - ARTICLE_PLANET_RADIUS_M);
-    return (vec3(2.0556e-6, 4.9788e-6, 2.136e-7) * exp((-(height_m_14) / ARTICLE_RAYLEIGH_SCALE_M)));
+    float height_m_16 = (length(position_5) - ARTICLE_PLANET_RADIUS_M);
+    return (vec3(2.0556e-6, 4.9788e-6, 2.136e-7) * exp((-(height_m_16) / ARTICLE_RAYLEIGH_SCALE_M)));
 }
 
 // Extinction, 1/m.
@@ -2137,10 +2241,10 @@ vec3 article_sigma_t(vec3 position_6) {
 
 // Transmittance between two points.
 // Cost: 3 exp, 3 exp a step; 8 steps.
-vec3 article_transmittance(vec3 from_m_8, vec3 to_m_6) {
+vec3 article_transmittance(vec3 from_m_8, vec3 to_m_7) {
     vec3 sum_5 = vec3(0.0);
     int i_12 = 0;
-    vec3 ds = ((to_m_6 - from_m_8) / vec3(8.0));
+    vec3 ds = ((to_m_7 - from_m_8) / vec3(8.0));
     bool loop_init_13 = true;
     while(true) {
         if (!loop_init_13) {

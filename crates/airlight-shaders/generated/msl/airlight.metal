@@ -53,6 +53,34 @@ struct FogLayers {
 struct type_6 {
     float inner[14];
 };
+struct AirMedium {
+    metal::packed_float3 molecules_per_m;
+    float molecules_scale_m;
+    metal::packed_float3 haze_extinction_per_m;
+    float haze_scale_m;
+    metal::packed_float3 haze_scattering_per_m;
+    float top_m;
+    metal::packed_float3 ozone_per_m;
+    float ozone_bottom_m;
+    float ozone_top_m;
+    float inverse_radius_per_m;
+    char _pad10[8];
+};
+struct AirLight {
+    metal::packed_float3 sunlight;
+    float sin_sun;
+    float cos_to_sun;
+    float molecules_phase;
+    float haze_phase;
+    char _pad5[4];
+};
+struct AirMarch {
+    PathOptics path;
+    float end_m;
+    char _pad2[12];
+    metal::packed_float3 depth_to_sun;
+    float clearance;
+};
 struct LocalLight {
     metal::packed_float3 position;
     uint kind;
@@ -1146,6 +1174,205 @@ PathOptics layered_fog(
     return PathOptics {metal::exp(-(_e208)), _e211};
 }
 
+// No fog: what a march starts with.
+// Cost: no exp.
+PathOptics no_fog(
+) {
+    return PathOptics {metal::float3(1.0), metal::float3(0.0)};
+}
+
+// Distance of a place from 0 to 1 along a segment, m, such that steps that are even in `place` have even shares of the light of uniform fog of this optical depth along the segment: short near the eye.
+// Cost: 3 exp.
+float shadow_edge_m(
+    float place,
+    float length_m_8,
+    float optical_depth_1
+) {
+    if (place >= 1.0) {
+        return length_m_8;
+    }
+    float _e5 = mean_transmittance(optical_depth_1);
+    float mean = place * _e5;
+    float u = mean * optical_depth_1;
+    float series_2 = mean * (1.0 + (u * (0.5 + (u * (0.33333334 + (u * (0.25 + (u * 0.2))))))));
+    float direct_2 = -(metal::log(metal::max((1.0 - place) + (place * metal::exp(-(optical_depth_1))), 0.000000000000000000000000000001))) / metal::max(optical_depth_1, 0.05);
+    return length_m_8 * metal::min((u < 0.05) ? series_2 : direct_2, 1.0);
+}
+
+// Part of a step that is in sunlight, 0 to 1, between heights above the surface of a shadow (or distances before a shadow caster) at its ends, negative in shadow and linear between: the edge of a shadow is found inside a step.
+// Cost: no exp.
+float lit_part(
+    float from_clearance_m,
+    float to_clearance_m
+) {
+    float least = metal::min(from_clearance_m, to_clearance_m);
+    float most = metal::max(from_clearance_m, to_clearance_m);
+    if (least >= 0.0) {
+        return 1.0;
+    }
+    if (most <= 0.0) {
+        return 0.0;
+    }
+    return most / (most - least);
+}
+
+// Light whose sun is visible in part, 0 to 1.
+// Cost: no exp.
+FogLight with_visibility(
+    FogLight light_6,
+    float visibility
+) {
+    return FogLight {light_6.sunlight * visibility, light_6.sin_sun, light_6.ambient};
+}
+
+// A march in uniform fog with one step more, from which the sun is visible in part.
+// Cost: 6 exp.
+PathOptics shadowed_uniform_fog(
+    PathOptics before_1,
+    FogMedium medium_6,
+    float from_m_2,
+    float to_m_1,
+    FogLight light_7,
+    float visibility_1
+) {
+    FogLight _e7 = with_visibility(light_7, visibility_1);
+    PathOptics _e8 = uniform_fog(medium_6, to_m_1 - from_m_2, _e7);
+    PathOptics _e9 = near_then_far(before_1, _e8);
+    return _e9;
+}
+
+// A march in exponential height fog over flat ground with one step more, from which the sun is visible in part. The fog above the ray attenuates sunlight.
+// Cost: 16 exp.
+PathOptics shadowed_exponential_fog(
+    PathOptics before_2,
+    FogMedium medium_7,
+    float height_m_10,
+    float sin_elevation_6,
+    float from_m_3,
+    float to_m_2,
+    float reference_height_m_5,
+    float scale_height_m_9,
+    FogLight light_8,
+    float visibility_2
+) {
+    FogLight _e13 = with_visibility(light_8, visibility_2);
+    PathOptics _e14 = exponential_fog(medium_7, height_m_10 + (sin_elevation_6 * from_m_3), sin_elevation_6, to_m_2 - from_m_3, reference_height_m_5, scale_height_m_9, _e13);
+    PathOptics _e15 = near_then_far(before_2, _e14);
+    return _e15;
+}
+
+// Length of a ray in the air, m: up to the ground, the top of the air or its own end. 0 for an eye below the ground. Only a ray that grazes the ground has an error above 1 m.
+// Cost: no exp.
+float air_length_m(
+    AirMedium air,
+    RaySegment ray_9
+) {
+    metal::float2 _e3 = below_height(ray_9, 0.0);
+    metal::float2 _e5 = below_height(ray_9, air.top_m);
+    return (_e3.y > _e3.x) ? _e3.x : _e5.y;
+}
+
+// Columns of molecules (x), haze (y) and ozone (z) along a ray, m. Only a ray that grazes an edge of the ozone has an error above 1e-2 m.
+// Cost: 18 exp.
+metal::float3 air_columns_m(
+    AirMedium air_1,
+    RaySegment ray_10
+) {
+    float _e4 = exponential_column_m(ray_10, 0.0, air_1.molecules_scale_m);
+    float _e7 = exponential_column_m(ray_10, 0.0, air_1.haze_scale_m);
+    float _e10 = layer_column_m(ray_10, air_1.ozone_bottom_m, air_1.ozone_top_m);
+    return metal::float3(_e4, _e7, _e10);
+}
+
+// Optical depth of columns of `air_columns_m`.
+// Cost: no exp.
+metal::float3 air_optical_depth(
+    AirMedium air_2,
+    metal::float3 columns_m
+) {
+    return ((air_2.molecules_per_m * columns_m.x) + (air_2.haze_extinction_per_m * columns_m.y)) + (air_2.ozone_per_m * columns_m.z);
+}
+
+// Sine of the sun's elevation after `s_m` metres of a ray, where the vertical is another than at its start.
+// Cost: no exp.
+float sin_sun_along(
+    AirMedium air_3,
+    RaySegment ray_11,
+    float s_m_1,
+    AirLight light_9
+) {
+    float k_1 = air_3.inverse_radius_per_m;
+    float _e15 = height_at(ray_11, s_m_1);
+    float sine_1 = ((light_9.sin_sun * (1.0 + (k_1 * ray_11.height_m))) + ((k_1 * s_m_1) * light_9.cos_to_sun)) / (1.0 + (k_1 * _e15));
+    return metal::clamp(sine_1, -1.0, 1.0);
+}
+
+// Clearance of the way from a height to the sun: negative if the planet hides the sun. It is the height of the lowest point of the way times `2 / R` and the squared cosine of the sun's elevation.
+// Cost: no exp.
+float sun_clearance(
+    AirMedium air_4,
+    float height_m_11,
+    float sin_sun_1
+) {
+    float sine_2 = metal::min(sin_sun_1, 0.0);
+    return ((((2.0 * air_4.inverse_radius_per_m) * height_m_11) * (1.0 - sine_2)) * (1.0 + sine_2)) - (sine_2 * sine_2);
+}
+
+// Optical depth from a height to the sun, or to where it sets if the planet hides it.
+// Cost: 18 exp.
+metal::float3 air_depth_to_sun(
+    AirMedium air_5,
+    float height_m_12,
+    float sin_sun_2
+) {
+    float above_m = metal::max(height_m_12, 0.0);
+    float dip = (2.0 * above_m) * air_5.inverse_radius_per_m;
+    float sine_3 = metal::max(sin_sun_2, -(metal::sqrt(dip / (1.0 + dip))));
+    RaySegment _e17 = ray_segment(above_m, sine_3, INFINITE_M, air_5.inverse_radius_per_m);
+    metal::float3 _e18 = air_columns_m(air_5, _e17);
+    metal::float3 _e19 = air_optical_depth(air_5, _e18);
+    return _e19;
+}
+
+// A march at the start of a ray.
+// Cost: 18 exp.
+AirMarch air_march(
+    AirMedium air_6,
+    RaySegment ray_12,
+    AirLight light_10
+) {
+    metal::float3 _e5 = air_depth_to_sun(air_6, ray_12.height_m, light_10.sin_sun);
+    PathOptics _e6 = no_fog();
+    float _e9 = sun_clearance(air_6, ray_12.height_m, light_10.sin_sun);
+    return AirMarch {_e6, 0.0, {}, _e5, _e9};
+}
+
+// A march with one step more, to a distance, m. From the step the sun is visible in part, 0 to 1, apart from the planet, which hides it by itself.
+// Cost: 45 exp.
+AirMarch air_march_step(
+    AirMarch march,
+    AirMedium air_7,
+    RaySegment ray_13,
+    float to_m_3,
+    AirLight light_11,
+    float visibility_3
+) {
+    RaySegment _e7 = ray_part(ray_13, march.end_m, to_m_3);
+    metal::float3 _e8 = air_columns_m(air_7, _e7);
+    metal::float3 _e9 = air_optical_depth(air_7, _e8);
+    metal::float3 scattered_1 = (air_7.molecules_per_m * (_e8.x * light_11.molecules_phase)) + (air_7.haze_scattering_per_m * (_e8.y * light_11.haze_phase));
+    float _e21 = height_at(ray_13, to_m_3);
+    float _e22 = sin_sun_along(air_7, ray_13, to_m_3, light_11);
+    metal::float3 _e23 = air_depth_to_sun(air_7, _e21, _e22);
+    float _e24 = sun_clearance(air_7, _e21, _e22);
+    float _e26 = lit_part(march.clearance, _e24);
+    float lit = visibility_3 * _e26;
+    metal::float3 _e32 = mean_attenuated_source_rgb(march.depth_to_sun, _e23 + _e9);
+    metal::float3 arriving_1 = (light_11.sunlight * lit) * _e32;
+    PathOptics _e39 = near_then_far(march.path, PathOptics {metal::exp(-(_e9)), scattered_1 * arriving_1});
+    return AirMarch {_e39, to_m_3, {}, _e23, _e24};
+}
+
 // A point light.
 // Cost: no exp.
 LocalLight point_light(
@@ -1185,12 +1412,12 @@ LocalLight sphere_light(
 LightRayGeometry light_ray_geometry(
     metal::float3 eye,
     metal::float3 direction,
-    float length_m_8,
-    metal::float3 light_6,
+    float length_m_9,
+    metal::float3 light_12,
     float at_least_m
 ) {
-    metal::float3 to_light = light_6 - eye;
-    return LightRayGeometry {metal::max(metal::length(metal::cross(to_light, direction)), at_least_m), -(metal::dot(to_light, direction)), length_m_8};
+    metal::float3 to_light = light_12 - eye;
+    return LightRayGeometry {metal::max(metal::length(metal::cross(to_light, direction)), at_least_m), -(metal::dot(to_light, direction)), length_m_9};
 }
 
 // Distance from the light at a place, m.
@@ -1234,8 +1461,8 @@ float light_angle(
     LightRayGeometry geometry_1
 ) {
     float h_1 = geometry_1.nearest_m;
-    float u = geometry_1.start_m;
-    return metal::atan2(h_1 * geometry_1.length_m, (h_1 * h_1) + (u * (u + geometry_1.length_m)));
+    float u_1 = geometry_1.start_m;
+    return metal::atan2(h_1 * geometry_1.length_m, (h_1 * h_1) + (u_1 * (u_1 + geometry_1.length_m)));
 }
 
 // Radiance scattered from a point light of unit intensity by uniform fog of unit scattering coefficient that scatters equally in all directions, 1/m, without extinction: `angle / (4 pi h)` (after Macklin 2010, corrected).
@@ -1254,10 +1481,10 @@ metal::float2 light_gauss_node(
 ) {
     type_8 places = type_8 {{0.019855073, 0.10166676, 0.23723379, 0.40828267}};
     type_8 weights = type_8 {{0.050614268, 0.11119052, 0.15685332, 0.18134189}};
-    uint k_1 = metal::min(i_5, 7u - metal::min(i_5, 7u));
-    float _e19 = places.inner[k_1];
-    float _e21 = places.inner[k_1];
-    float _e28 = weights.inner[k_1];
+    uint k_2 = metal::min(i_5, 7u - metal::min(i_5, 7u));
+    float _e19 = places.inner[k_2];
+    float _e21 = places.inner[k_2];
+    float _e28 = weights.inner[k_2];
     return metal::float2((i_5 > 3u) ? (1.0 - _e21) : _e19, _e28);
 }
 
@@ -1331,43 +1558,43 @@ metal::float3 airlight_isotropic(
         }
     }
     float _e94 = light_distance_m(h_2, geometry_3.start_m);
-    metal::float3 arriving_1 = metal::exp(-(extinction_per_m) * _e94);
+    metal::float3 arriving_2 = metal::exp(-(extinction_per_m) * _e94);
     metal::float3 _e101 = sum;
-    return (((0.15915494 / _e5) * arriving_1) * span_1) * _e101;
+    return (((0.15915494 / _e5) * arriving_2) * span_1) * _e101;
 }
 
 // A point light in uniform fog that scatters equally in all directions.
 // Cost: 6 exp, 3 exp a step; 8 steps.
 metal::float3 point_light_in_isotropic_fog(
-    FogMedium medium_6,
-    LocalLight light_7,
+    FogMedium medium_8,
+    LocalLight light_13,
     metal::float3 eye_1,
     metal::float3 direction_1,
-    float length_m_9
+    float length_m_10
 ) {
-    LightRayGeometry _e7 = light_ray_geometry(eye_1, direction_1, length_m_9, light_7.position, light_7.radius_m);
-    metal::float3 _e12 = airlight_isotropic(_e7, medium_6.extinction_per_m);
-    return (medium_6.scattering_per_m * light_7.intensity) * _e12;
+    LightRayGeometry _e7 = light_ray_geometry(eye_1, direction_1, length_m_10, light_13.position, light_13.radius_m);
+    metal::float3 _e12 = airlight_isotropic(_e7, medium_8.extinction_per_m);
+    return (medium_8.scattering_per_m * light_13.intensity) * _e12;
 }
 
 // A ray past a light.
 // Cost: no exp.
 LightRay light_ray(
-    LocalLight light_8,
+    LocalLight light_14,
     metal::float3 eye_2,
     metal::float3 direction_2,
-    float length_m_10
+    float length_m_11
 ) {
     LightRayGeometry geometry_4 = {};
     bool local_12 = {};
-    LightRayGeometry _e6 = light_ray_geometry(eye_2, direction_2, length_m_10, light_8.position, light_8.radius_m);
+    LightRayGeometry _e6 = light_ray_geometry(eye_2, direction_2, length_m_11, light_14.position, light_14.radius_m);
     geometry_4 = _e6;
-    metal::float3 to_light_1 = light_8.position - eye_2;
+    metal::float3 to_light_1 = light_14.position - eye_2;
     float nearest_m_2 = metal::length(metal::cross(to_light_1, direction_2));
-    if (light_8.kind == LIGHT_SPHERE) {
+    if (light_14.kind == LIGHT_SPHERE) {
         float distance_m_3 = metal::length(to_light_1);
-        float inside = (light_8.radius_m - nearest_m_2) * (light_8.radius_m + nearest_m_2);
-        if (distance_m_3 <= light_8.radius_m) {
+        float inside = (light_14.radius_m - nearest_m_2) * (light_14.radius_m + nearest_m_2);
+        if (distance_m_3 <= light_14.radius_m) {
             geometry_4.length_m = 0.0;
         } else {
             float _e26 = geometry_4.start_m;
@@ -1379,47 +1606,47 @@ LightRay light_ray(
             bool _e34 = local_12;
             if (_e34) {
                 float _e42 = geometry_4.start_m;
-                float hit_m = ((distance_m_3 - light_8.radius_m) * (distance_m_3 + light_8.radius_m)) / (metal::sqrt(inside) - _e42);
-                geometry_4.length_m = metal::min(length_m_10, hit_m);
+                float hit_m = ((distance_m_3 - light_14.radius_m) * (distance_m_3 + light_14.radius_m)) / (metal::sqrt(inside) - _e42);
+                geometry_4.length_m = metal::min(length_m_11, hit_m);
             }
         }
     }
     float _e49 = geometry_4.start_m;
     metal::float3 closest = -(to_light_1) - (_e49 * direction_2);
     LightRayGeometry _e52 = geometry_4;
-    return LightRay {_e52, {}, light_8, nearest_m_2, metal::dot(closest, light_8.axis), metal::dot(direction_2, light_8.axis)};
+    return LightRay {_e52, {}, light_14, nearest_m_2, metal::dot(closest, light_14.axis), metal::dot(direction_2, light_14.axis)};
 }
 
 // Interval of a ray, m from its start, in which the direction from a spot light is within a cone of this cosine of its half-angle; the whole ray for other lights, (0, 0) outside.
 // Cost: no exp.
 metal::float2 lit_interval(
-    LightRay ray_9,
+    LightRay ray_14,
     float cos_angle
 ) {
-    float from_m_2 = -1000000000000.0;
+    float from_m_4 = -1000000000000.0;
     bool local_13 = {};
-    float to_m_1 = INFINITE_M;
+    float to_m_4 = INFINITE_M;
     bool local_14 = {};
-    float length_m_15 = ray_9.geometry.length_m;
-    if (ray_9.light.kind != LIGHT_SPOT) {
+    float length_m_15 = ray_14.geometry.length_m;
+    if (ray_14.light.kind != LIGHT_SPOT) {
         return metal::float2(0.0, length_m_15);
     }
-    float h_3 = ray_9.geometry.nearest_m;
-    float across = ray_9.across_m / h_3;
-    float _e15 = light_distance_m(across, ray_9.along);
+    float h_3 = ray_14.geometry.nearest_m;
+    float across = ray_14.across_m / h_3;
+    float _e15 = light_distance_m(across, ray_14.along);
     if (cos_angle >= _e15) {
         return metal::float2(0.0);
     }
-    metal::float2 middle = metal::float2(across, ray_9.along) / metal::float2(_e15);
+    metal::float2 middle = metal::float2(across, ray_14.along) / metal::float2(_e15);
     float width = cos_angle / _e15;
     float sin_width = metal::sqrt(metal::max((1.0 - width) * (1.0 + width), 0.0));
     metal::float2 first_1 = metal::float2((middle.x * width) + (middle.y * sin_width), (middle.y * width) - (middle.x * sin_width));
     metal::float2 last_3 = metal::float2((middle.x * width) - (middle.y * sin_width), (middle.y * width) + (middle.x * sin_width));
     if (first_1.x > 0.0) {
-        from_m_2 = (h_3 * first_1.y) / first_1.x;
+        from_m_4 = (h_3 * first_1.y) / first_1.x;
     } else {
         if (across <= 0.0) {
-            local_13 = ray_9.along >= 0.0;
+            local_13 = ray_14.along >= 0.0;
         } else {
             local_13 = false;
         }
@@ -1429,10 +1656,10 @@ metal::float2 lit_interval(
         }
     }
     if (last_3.x > 0.0) {
-        to_m_1 = (h_3 * last_3.y) / last_3.x;
+        to_m_4 = (h_3 * last_3.y) / last_3.x;
     } else {
         if (across <= 0.0) {
-            local_14 = ray_9.along <= 0.0;
+            local_14 = ray_14.along <= 0.0;
         } else {
             local_14 = false;
         }
@@ -1441,34 +1668,34 @@ metal::float2 lit_interval(
             return metal::float2(0.0);
         }
     }
-    float _e94 = from_m_2;
-    float _e95 = to_m_1;
-    metal::float2 interval = metal::clamp(metal::float2(_e94, _e95) - metal::float2(ray_9.geometry.start_m), metal::float2(0.0), metal::float2(length_m_15));
+    float _e94 = from_m_4;
+    float _e95 = to_m_4;
+    metal::float2 interval = metal::clamp(metal::float2(_e94, _e95) - metal::float2(ray_14.geometry.start_m), metal::float2(0.0), metal::float2(length_m_15));
     return (interval.y > interval.x) ? interval : metal::float2(0.0);
 }
 
 // Light at a place of a ray: its intensity there relative to `intensity` (x), times the ratio of the squared distances `geometry` and the light have; the distance to the light's surface, m (y); 1 minus the cosine of the scattering angle (z).
 // Cost: no exp.
 metal::float3 light_at(
-    LightRay ray_10,
+    LightRay ray_15,
     float place_m_2
 ) {
-    float h_4 = ray_10.geometry.nearest_m;
+    float h_4 = ray_15.geometry.nearest_m;
     float _e4 = light_distance_m(h_4, place_m_2);
     float _e5 = light_ahead_m(h_4, place_m_2);
     float one_minus_cos_10 = _e5 / _e4;
-    if (ray_10.light.kind == LIGHT_SPOT) {
-        float cos_angle_3 = (ray_10.across_m + (place_m_2 * ray_10.along)) / _e4;
-        float range = metal::max(ray_10.light.cos_inner - ray_10.light.cos_outer, 0.000001);
-        float part_1 = metal::clamp((cos_angle_3 - ray_10.light.cos_outer) / range, 0.0, 1.0);
+    if (ray_15.light.kind == LIGHT_SPOT) {
+        float cos_angle_3 = (ray_15.across_m + (place_m_2 * ray_15.along)) / _e4;
+        float range = metal::max(ray_15.light.cos_inner - ray_15.light.cos_outer, 0.000001);
+        float part_1 = metal::clamp((cos_angle_3 - ray_15.light.cos_outer) / range, 0.0, 1.0);
         return metal::float3(part_1 * part_1, _e4, one_minus_cos_10);
     }
-    if (ray_10.light.kind == LIGHT_SPHERE) {
-        float radius_m_4 = ray_10.light.radius_m;
-        float _e39 = light_distance_m(ray_10.nearest_m, place_m_2);
+    if (ray_15.light.kind == LIGHT_SPHERE) {
+        float radius_m_4 = ray_15.light.radius_m;
+        float _e39 = light_distance_m(ray_15.nearest_m, place_m_2);
         float centre_m = metal::max(_e39, radius_m_4);
-        float sine_1 = radius_m_4 / centre_m;
-        float closeness = 2.0 / (1.0 + metal::sqrt(metal::max((1.0 - sine_1) * (1.0 + sine_1), 0.0)));
+        float sine_4 = radius_m_4 / centre_m;
+        float closeness = 2.0 / (1.0 + metal::sqrt(metal::max((1.0 - sine_4) * (1.0 + sine_4), 0.0)));
         return metal::float3((closeness * (_e4 / centre_m)) * (_e4 / centre_m), centre_m - radius_m_4, metal::min(1.0 + (place_m_2 / centre_m), 2.0));
     }
     return metal::float3(1.0, _e4, one_minus_cos_10);
@@ -1487,20 +1714,20 @@ float light_peak(
 metal::float3 light_panel_in_uniform_fog(
     metal::float3 extinction_per_m_1,
     float mean_cosine_1,
-    LightRay ray_11,
-    float from_m_3,
-    float to_m_2
+    LightRay ray_16,
+    float from_m_5,
+    float to_m_5
 ) {
     metal::float3 sum_1 = metal::float3(0.0);
     uint i_8 = 0u;
-    float h_5 = ray_11.geometry.nearest_m;
-    float start_1 = ray_11.geometry.start_m + from_m_3;
+    float h_5 = ray_16.geometry.nearest_m;
+    float start_1 = ray_16.geometry.start_m + from_m_5;
     float _e10 = light_distance_m(h_5, start_1);
     float _e11 = light_ahead_m(h_5, start_1);
-    float least = metal::min(extinction_per_m_1.x, metal::min(extinction_per_m_1.y, extinction_per_m_1.z));
+    float least_1 = metal::min(extinction_per_m_1.x, metal::min(extinction_per_m_1.y, extinction_per_m_1.z));
     float rate = metal::max(extinction_per_m_1.x, metal::max(extinction_per_m_1.y, extinction_per_m_1.z));
-    float _e24 = light_excess_m(LightRayGeometry {h_5, start_1, to_m_2 - from_m_3});
-    float end_3 = metal::min(_e24, LIGHT_CUTOFF / metal::max(least, 0.000000000001));
+    float _e24 = light_excess_m(LightRayGeometry {h_5, start_1, to_m_5 - from_m_5});
+    float end_3 = metal::min(_e24, LIGHT_CUTOFF / metal::max(least_1, 0.000000000001));
     float _e30 = light_peak(mean_cosine_1);
     float _e32 = light_distance_m(_e30 * h_5, _e11);
     float _e37 = light_distance_m(1.0, (rate * _e32) / 12.0);
@@ -1523,11 +1750,11 @@ metal::float3 light_panel_in_uniform_fog(
             metal::float2 _e49 = light_node(_e48, scale, _e39);
             float s = _e49.x + _e11;
             float t_1 = (0.5 * _e49.x) * ((_e49.x + (2.0 * _e10)) / s);
-            metal::float3 _e67 = light_at(ray_11, (0.5 * (s - h_5)) * ((s + h_5) / s));
+            metal::float3 _e67 = light_at(ray_16, (0.5 * (s - h_5)) * ((s + h_5) / s));
             float _e69 = henyey_greenstein(_e67.z, mean_cosine_1);
             float weight = (((2.0 * _e49.y) / ((h_5 * h_5) + (s * s))) * _e67.x) * _e69;
             metal::float3 _e80 = sum_1;
-            sum_1 = _e80 + (weight * metal::exp(-(extinction_per_m_1) * ((from_m_3 + t_1) + _e67.y)));
+            sum_1 = _e80 + (weight * metal::exp(-(extinction_per_m_1) * ((from_m_5 + t_1) + _e67.y)));
         }
     }
     metal::float3 _e92 = sum_1;
@@ -1537,35 +1764,35 @@ metal::float3 light_panel_in_uniform_fog(
 // A light of any kind in uniform fog whose phase function is that of Henyey and Greenstein, of mean cosine from -0.3 to 0.95.
 // Cost: 3 exp, 9 exp a step; 8 steps, for point and sphere lights a third.
 metal::float3 light_in_uniform_fog(
-    FogMedium medium_7,
+    FogMedium medium_9,
     float mean_cosine_2,
-    LocalLight light_9,
+    LocalLight light_15,
     metal::float3 eye_3,
     metal::float3 direction_3,
-    float length_m_11
+    float length_m_12
 ) {
     metal::float3 sum_2 = metal::float3(0.0);
-    LightRay _e6 = light_ray(light_9, eye_3, direction_3, length_m_11);
-    metal::float2 _e8 = lit_interval(_e6, light_9.cos_outer);
-    metal::float2 _e10 = lit_interval(_e6, light_9.cos_inner);
+    LightRay _e6 = light_ray(light_15, eye_3, direction_3, length_m_12);
+    metal::float2 _e8 = lit_interval(_e6, light_15.cos_outer);
+    metal::float2 _e10 = lit_interval(_e6, light_15.cos_inner);
     metal::float2 inner_1 = metal::clamp(_e10, metal::float2(_e8.x), metal::float2(_e8.y));
     if (inner_1.x > _e8.x) {
         metal::float3 _e22 = sum_2;
-        metal::float3 _e26 = light_panel_in_uniform_fog(medium_7.extinction_per_m, mean_cosine_2, _e6, _e8.x, inner_1.x);
+        metal::float3 _e26 = light_panel_in_uniform_fog(medium_9.extinction_per_m, mean_cosine_2, _e6, _e8.x, inner_1.x);
         sum_2 = _e22 + _e26;
     }
     if (inner_1.y > inner_1.x) {
         metal::float3 _e31 = sum_2;
-        metal::float3 _e35 = light_panel_in_uniform_fog(medium_7.extinction_per_m, mean_cosine_2, _e6, inner_1.x, inner_1.y);
+        metal::float3 _e35 = light_panel_in_uniform_fog(medium_9.extinction_per_m, mean_cosine_2, _e6, inner_1.x, inner_1.y);
         sum_2 = _e31 + _e35;
     }
     if (_e8.y > inner_1.y) {
         metal::float3 _e40 = sum_2;
-        metal::float3 _e44 = light_panel_in_uniform_fog(medium_7.extinction_per_m, mean_cosine_2, _e6, inner_1.y, _e8.y);
+        metal::float3 _e44 = light_panel_in_uniform_fog(medium_9.extinction_per_m, mean_cosine_2, _e6, inner_1.y, _e8.y);
         sum_2 = _e40 + _e44;
     }
     metal::float3 _e49 = sum_2;
-    return (medium_7.scattering_per_m * light_9.intensity) * _e49;
+    return (medium_9.scattering_per_m * light_15.intensity) * _e49;
 }
 
 // Column from the eye to a distance along a ray and from there to a light, m.
@@ -1573,16 +1800,16 @@ metal::float3 light_in_uniform_fog(
 float column_by_light_m(
     ExponentialFog fog_3,
     float eye_height_m,
-    float sin_elevation_6,
+    float sin_elevation_7,
     float distance_m,
     float light_height_m,
     float to_centre_m,
     float to_light_m
 ) {
-    float height_m_11 = eye_height_m + (sin_elevation_6 * distance_m);
-    float sine_2 = (light_height_m - height_m_11) / metal::max(to_centre_m, 0.000001);
-    float _e15 = flat_exponential_column_m(eye_height_m, sin_elevation_6, distance_m, fog_3.reference_height_m, fog_3.scale_height_m);
-    float _e18 = flat_exponential_column_m(height_m_11, sine_2, to_light_m, fog_3.reference_height_m, fog_3.scale_height_m);
+    float height_m_13 = eye_height_m + (sin_elevation_7 * distance_m);
+    float sine_5 = (light_height_m - height_m_13) / metal::max(to_centre_m, 0.000001);
+    float _e15 = flat_exponential_column_m(eye_height_m, sin_elevation_7, distance_m, fog_3.reference_height_m, fog_3.scale_height_m);
+    float _e18 = flat_exponential_column_m(height_m_13, sine_5, to_light_m, fog_3.reference_height_m, fog_3.scale_height_m);
     return _e15 + _e18;
 }
 
@@ -1591,10 +1818,10 @@ float column_by_light_m(
 metal::float3 light_panel_in_exponential_fog(
     ExponentialFog fog_4,
     float eye_height_m_1,
-    float sin_elevation_7,
-    LightRay ray_12,
-    float from_m_4,
-    float to_m_3
+    float sin_elevation_8,
+    LightRay ray_17,
+    float from_m_6,
+    float to_m_6
 ) {
     float end = {};
     float reached = 0.0;
@@ -1605,16 +1832,16 @@ metal::float3 light_panel_in_exponential_fog(
     float anchor = {};
     metal::float3 sum_3 = metal::float3(0.0);
     uint i_10 = 0u;
-    float h_6 = ray_12.geometry.nearest_m;
-    float start_2 = ray_12.geometry.start_m + from_m_4;
+    float h_6 = ray_17.geometry.nearest_m;
+    float start_2 = ray_17.geometry.start_m + from_m_6;
     metal::float3 extinction = fog_4.medium.extinction_per_m;
-    float least_1 = metal::max(metal::min(fog_4.medium.extinction_per_m.x, metal::min(fog_4.medium.extinction_per_m.y, fog_4.medium.extinction_per_m.z)), 0.000000000001);
-    float most = metal::max(fog_4.medium.extinction_per_m.x, metal::max(fog_4.medium.extinction_per_m.y, fog_4.medium.extinction_per_m.z));
-    float light_height_m_1 = ray_12.light.position[1];
+    float least_2 = metal::max(metal::min(fog_4.medium.extinction_per_m.x, metal::min(fog_4.medium.extinction_per_m.y, fog_4.medium.extinction_per_m.z)), 0.000000000001);
+    float most_1 = metal::max(fog_4.medium.extinction_per_m.x, metal::max(fog_4.medium.extinction_per_m.y, fog_4.medium.extinction_per_m.z));
+    float light_height_m_1 = ray_17.light.position[1];
     float _e28 = light_distance_m(h_6, start_2);
     float _e29 = light_ahead_m(h_6, start_2);
-    float _e32 = light_excess_m(LightRayGeometry {h_6, start_2, to_m_3 - from_m_4});
-    float _e33 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_7, from_m_4, light_height_m_1, _e28, _e28);
+    float _e32 = light_excess_m(LightRayGeometry {h_6, start_2, to_m_6 - from_m_6});
+    float _e33 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_8, from_m_6, light_height_m_1, _e28, _e28);
     end = _e32;
     bool loop_init_8 = true;
     while(true) {
@@ -1634,8 +1861,8 @@ metal::float3 light_panel_in_exponential_fog(
             float _e49 = end;
             float t_2 = (0.5 * _e42) * ((_e45 + (2.0 * _e28)) / (_e49 + _e29));
             float _e54 = light_distance_m(h_6, start_2 + t_2);
-            float _e56 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_7, from_m_4 + t_2, light_height_m_1, _e54, _e54);
-            reached = least_1 * (_e56 - _e33);
+            float _e56 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_8, from_m_6 + t_2, light_height_m_1, _e54, _e54);
+            reached = least_2 * (_e56 - _e33);
             float _e59 = reached;
             if (_e59 <= 25.334) {
                 break;
@@ -1647,22 +1874,22 @@ metal::float3 light_panel_in_exponential_fog(
     }
     float _e73 = reached;
     float _e74 = end;
-    float rate_1 = metal::max(_e73 / metal::max(_e74, 0.000000000000000000000000000001), 0.0) * (most / least_1);
-    if ((start_2 + (to_m_3 - from_m_4)) <= 0.0) {
+    float rate_1 = metal::max(_e73 / metal::max(_e74, 0.000000000000000000000000000001), 0.0) * (most_1 / least_2);
+    if ((start_2 + (to_m_6 - from_m_6)) <= 0.0) {
         float _e88 = end;
         local_15 = (rate_1 * _e88) < 4.0;
     } else {
         local_15 = false;
     }
     bool outwards = local_15;
-    origin_m = from_m_4;
+    origin_m = from_m_6;
     anchor = start_2;
     if (outwards) {
         float _e98 = end;
         float _e101 = end;
         float _e105 = end;
-        float reach = metal::min((0.5 * _e98) * ((_e101 + (2.0 * _e28)) / (_e105 + _e29)), to_m_3 - from_m_4);
-        origin_m = from_m_4 + reach;
+        float reach = metal::min((0.5 * _e98) * ((_e101 + (2.0 * _e28)) / (_e105 + _e29)), to_m_6 - from_m_6);
+        origin_m = from_m_6 + reach;
         forward = -1.0;
         anchor = -((start_2 + reach));
         float _e115 = anchor;
@@ -1700,10 +1927,10 @@ metal::float3 light_panel_in_exponential_fog(
             float t_3 = metal::max(_e150 + (((_e151 * 0.5) * _e147.x) * ((_e147.x + (2.0 * _e119)) / s_1)), 0.0);
             float _e165 = forward;
             float place_8 = ((_e165 * 0.5) * (s_1 - h_6)) * ((s_1 + h_6) / s_1);
-            metal::float3 _e173 = light_at(ray_12, place_8);
-            float centre_m_1 = (ray_12.light.kind == LIGHT_SPHERE) ? (_e173.y + ray_12.light.radius_m) : _e173.y;
-            float _e185 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_7, t_3, light_height_m_1, centre_m_1, _e173.y);
-            float _e192 = decayed(((eye_height_m_1 + (sin_elevation_7 * t_3)) - fog_4.reference_height_m) / fog_4.scale_height_m);
+            metal::float3 _e173 = light_at(ray_17, place_8);
+            float centre_m_1 = (ray_17.light.kind == LIGHT_SPHERE) ? (_e173.y + ray_17.light.radius_m) : _e173.y;
+            float _e185 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_8, t_3, light_height_m_1, centre_m_1, _e173.y);
+            float _e192 = decayed(((eye_height_m_1 + (sin_elevation_8 * t_3)) - fog_4.reference_height_m) / fog_4.scale_height_m);
             float _e195 = henyey_greenstein(_e173.z, fog_4.mean_cosine);
             float weight_1 = ((((2.0 * _e147.y) / ((h_6 * h_6) + (s_1 * s_1))) * _e173.x) * _e195) * _e192;
             metal::float3 _e207 = sum_3;
@@ -1718,29 +1945,29 @@ metal::float3 light_panel_in_exponential_fog(
 // Cost: 2 exp, 17 exp a step; 1 to 6 steps of 73 to 101.
 metal::float3 light_in_exponential_fog(
     ExponentialFog fog_5,
-    LocalLight light_10,
+    LocalLight light_16,
     metal::float3 eye_4,
     metal::float3 direction_4,
-    float length_m_12
+    float length_m_13
 ) {
     float last_m = {};
     float floor = {};
     metal::float3 height_cuts = {};
     metal::float3 sum_4 = metal::float3(0.0);
-    float from_m_5 = {};
+    float from_m_7 = {};
     uint i_11 = 0u;
-    LightRay _e5 = light_ray(light_10, eye_4, direction_4, length_m_12);
-    metal::float2 _e7 = lit_interval(_e5, light_10.cos_outer);
-    metal::float2 _e9 = lit_interval(_e5, light_10.cos_inner);
+    LightRay _e5 = light_ray(light_16, eye_4, direction_4, length_m_13);
+    metal::float2 _e7 = lit_interval(_e5, light_16.cos_outer);
+    metal::float2 _e9 = lit_interval(_e5, light_16.cos_inner);
     last_m = _e7.y;
     float rise_1 = direction_4.y / fog_5.scale_height_m;
     float start_3 = (eye_4.y - fog_5.reference_height_m) / fog_5.scale_height_m;
     floor = start_3 + metal::min(rise_1 * _e5.geometry.length_m, 0.0);
     if (rise_1 < 0.0) {
         metal::float3 extinction_1 = fog_5.medium.extinction_per_m;
-        float least_2 = metal::max(metal::min(fog_5.medium.extinction_per_m.x, metal::min(fog_5.medium.extinction_per_m.y, fog_5.medium.extinction_per_m.z)), 0.000000000001);
+        float least_3 = metal::max(metal::min(fog_5.medium.extinction_per_m.x, metal::min(fog_5.medium.extinction_per_m.y, fog_5.medium.extinction_per_m.z)), 0.000000000001);
         float _e38 = decayed(start_3);
-        float dark = -(metal::log(_e38 + ((90.0 * -(rise_1)) / least_2)));
+        float dark = -(metal::log(_e38 + ((90.0 * -(rise_1)) / least_3)));
         float _e46 = floor;
         if (dark > _e46) {
             floor = dark;
@@ -1760,7 +1987,7 @@ metal::float3 light_in_exponential_fog(
             last_m = metal::min(_e76, metal::max(_e78, 0.0));
         }
     }
-    from_m_5 = _e7.x;
+    from_m_7 = _e7.x;
     bool loop_init_10 = true;
     while(true) {
         if (!loop_init_10) {
@@ -1774,118 +2001,31 @@ metal::float3 light_in_exponential_fog(
             break;
         }
         {
-            float _e92 = from_m_5;
+            float _e92 = from_m_7;
             float _e93 = last_m;
             if (_e92 >= _e93) {
                 break;
             }
             float _e95 = last_m;
-            float _e97 = from_m_5;
+            float _e97 = from_m_7;
             metal::float3 beside_light = metal::select(metal::float3(_e95), light_cuts, light_cuts > metal::float3(_e97));
             float _e101 = last_m;
             metal::float3 _e103 = height_cuts;
             metal::float3 _e104 = height_cuts;
-            float _e105 = from_m_5;
+            float _e105 = from_m_7;
             metal::float3 at_height = metal::select(metal::float3(_e101), _e103, _e104 > metal::float3(_e105));
             metal::float3 next = metal::min(beside_light, at_height);
             float _e111 = last_m;
-            float to_m_7 = metal::min(metal::min(next.x, _e111), metal::min(next.y, next.z));
+            float to_m_8 = metal::min(metal::min(next.x, _e111), metal::min(next.y, next.z));
             metal::float3 _e117 = sum_4;
-            float _e120 = from_m_5;
-            metal::float3 _e121 = light_panel_in_exponential_fog(fog_5, eye_4.y, direction_4.y, _e5, _e120, to_m_7);
+            float _e120 = from_m_7;
+            metal::float3 _e121 = light_panel_in_exponential_fog(fog_5, eye_4.y, direction_4.y, _e5, _e120, to_m_8);
             sum_4 = _e117 + _e121;
-            from_m_5 = to_m_7;
+            from_m_7 = to_m_8;
         }
     }
     metal::float3 _e130 = sum_4;
-    return (fog_5.medium.scattering_per_m * light_10.intensity) * _e130;
-}
-
-// No fog: what a march starts with.
-// Cost: no exp.
-PathOptics no_fog(
-) {
-    return PathOptics {metal::float3(1.0), metal::float3(0.0)};
-}
-
-// Distance of a place from 0 to 1 along a segment, m, such that steps that are even in `place` have even shares of the light of uniform fog of this optical depth along the segment: short near the eye.
-// Cost: 3 exp.
-float shadow_edge_m(
-    float place,
-    float length_m_13,
-    float optical_depth_1
-) {
-    if (place >= 1.0) {
-        return length_m_13;
-    }
-    float _e5 = mean_transmittance(optical_depth_1);
-    float mean = place * _e5;
-    float u_1 = mean * optical_depth_1;
-    float series_2 = mean * (1.0 + (u_1 * (0.5 + (u_1 * (0.33333334 + (u_1 * (0.25 + (u_1 * 0.2))))))));
-    float direct_2 = -(metal::log(metal::max((1.0 - place) + (place * metal::exp(-(optical_depth_1))), 0.000000000000000000000000000001))) / metal::max(optical_depth_1, 0.05);
-    return length_m_13 * metal::min((u_1 < 0.05) ? series_2 : direct_2, 1.0);
-}
-
-// Part of a step that is in sunlight, 0 to 1, between heights above the surface of a shadow (or distances before a shadow caster) at its ends, negative in shadow and linear between: the edge of a shadow is found inside a step.
-// Cost: no exp.
-float lit_part(
-    float from_clearance_m,
-    float to_clearance_m
-) {
-    float least_3 = metal::min(from_clearance_m, to_clearance_m);
-    float most_1 = metal::max(from_clearance_m, to_clearance_m);
-    if (least_3 >= 0.0) {
-        return 1.0;
-    }
-    if (most_1 <= 0.0) {
-        return 0.0;
-    }
-    return most_1 / (most_1 - least_3);
-}
-
-// Light whose sun is visible in part, 0 to 1.
-// Cost: no exp.
-FogLight with_visibility(
-    FogLight light_11,
-    float visibility
-) {
-    return FogLight {light_11.sunlight * visibility, light_11.sin_sun, light_11.ambient};
-}
-
-// A march in uniform fog with one step more, from which the sun is visible in part.
-// Cost: 6 exp.
-PathOptics shadowed_uniform_fog(
-    PathOptics before_1,
-    FogMedium medium_8,
-    float from_m_6,
-    float to_m_4,
-    FogLight light_12,
-    float visibility_1
-) {
-    FogLight _e7 = with_visibility(light_12, visibility_1);
-    PathOptics _e8 = uniform_fog(medium_8, to_m_4 - from_m_6, _e7);
-    PathOptics _e9 = near_then_far(before_1, _e8);
-    return _e9;
-}
-
-// A march in exponential height fog over flat ground with one step more, from which the sun is visible in part. The fog above the ray attenuates sunlight.
-// Cost: 16 exp.
-PathOptics shadowed_exponential_fog(
-    PathOptics before_2,
-    FogMedium medium_9,
-    float height_m_10,
-    float sin_elevation_8,
-    float from_m_7,
-    float to_m_5,
-    float reference_height_m_5,
-    float scale_height_m_9,
-    FogLight light_13,
-    float visibility_2
-) {
-    FogLight _e13 = with_visibility(light_13, visibility_2);
-    PathOptics _e14 = exponential_fog(medium_9, height_m_10 + (sin_elevation_8 * from_m_7), sin_elevation_8, to_m_5 - from_m_7, reference_height_m_5, scale_height_m_9, _e13);
-    PathOptics _e15 = near_then_far(before_2, _e14);
-    return _e15;
+    return (fog_5.medium.scattering_per_m * light_16.intensity) * _e130;
 }
 
 // Red, green and blue of a radiance at four wavelengths.
@@ -2133,8 +2273,8 @@ float elevation_from_row_place(
         return view_3.horizon_rad + (((-1.5707964 - view_3.horizon_rad) * squared) * squared);
     }
     if (place_3 < view_3.kink_place) {
-        float sine_3 = metal::sin((1.5707964 * place_3) / view_3.kink_place);
-        return view_3.horizon_rad + (((view_3.kink_rad - view_3.horizon_rad) * sine_3) * sine_3);
+        float sine_6 = metal::sin((1.5707964 * place_3) / view_3.kink_place);
+        return view_3.horizon_rad + (((view_3.kink_rad - view_3.horizon_rad) * sine_6) * sine_6);
     }
     float part_5 = (place_3 - view_3.kink_place) / (1.0 - view_3.kink_place);
     return view_3.kink_rad + (((view_3.highest_rad - view_3.kink_rad) * part_5) * part_5);
@@ -2507,8 +2647,8 @@ metal::float3 fog_stream_light(
     float _e17 = fog_stacked_coordinate(view_17, slice);
     metal::float3 uvw_1 = metal::float3(place_6.xy, _e17);
     metal::float4 logarithms = stream_table.sample(linear_sampler_4, uvw_1, metal::level(0.0));
-    metal::float4 scattered_1 = stream_phase_table.sample(linear_sampler_4, metal::float2(place_6.z, slice), metal::level(0.0));
-    return metal::exp(logarithms.xyz) * scattered_1.xyz;
+    metal::float4 scattered_2 = stream_phase_table.sample(linear_sampler_4, metal::float2(place_6.z, slice), metal::level(0.0));
+    return metal::exp(logarithms.xyz) * scattered_2.xyz;
 }
 
 // A layer of fog between the eye and a point, by its optical depth on the way: extinction times `exponential_column_m`, or the column of another profile. Rays end at the ground. Of several layers, transmittances multiply and path radiances add up. A step is a phase function of the fog.
@@ -2572,8 +2712,8 @@ PathOptics tabulated_fog(
 metal::float3 article_sigma_rayleigh(
     metal::float3 position_3
 ) {
-    float height_m_12 = metal::length(position_3) - ARTICLE_PLANET_RADIUS_M;
-    return metal::float3(0.0000058, 0.0000135, 0.000033099997) * metal::exp(-(height_m_12) / ARTICLE_RAYLEIGH_SCALE_M);
+    float height_m_14 = metal::length(position_3) - ARTICLE_PLANET_RADIUS_M;
+    return metal::float3(0.0000058, 0.0000135, 0.000033099997) * metal::exp(-(height_m_14) / ARTICLE_RAYLEIGH_SCALE_M);
 }
 
 // Scattering by haze, 1/m.
@@ -2581,8 +2721,8 @@ metal::float3 article_sigma_rayleigh(
 metal::float3 article_sigma_mie(
     metal::float3 position_4
 ) {
-    float height_m_13 = metal::length(position_4) - ARTICLE_PLANET_RADIUS_M;
-    return metal::float3(0.000021, 0.000021, 0.000021) * metal::exp(-(height_m_13) / ARTICLE_MIE_SCALE_M);
+    float height_m_15 = metal::length(position_4) - ARTICLE_PLANET_RADIUS_M;
+    return metal::float3(0.000021, 0.000021, 0.000021) * metal::exp(-(height_m_15) / ARTICLE_MIE_SCALE_M);
 }
 
 // Absorption by ozone, 1/m.
@@ -2590,8 +2730,8 @@ metal::float3 article_sigma_mie(
 metal::float3 article_sigma_ozone(
     metal::float3 position_5
 ) {
-    float height_m_14 = metal::length(position_5) - ARTICLE_PLANET_RADIUS_M;
-    return metal::float3(0.0000020556, 0.0000049788, 0.0000002136) * metal::exp(-(height_m_14) / ARTICLE_RAYLEIGH_SCALE_M);
+    float height_m_16 = metal::length(position_5) - ARTICLE_PLANET_RADIUS_M;
+    return metal::float3(0.0000020556, 0.0000049788, 0.0000002136) * metal::exp(-(height_m_16) / ARTICLE_RAYLEIGH_SCALE_M);
 }
 
 // Extinction, 1/m.
@@ -2609,11 +2749,11 @@ metal::float3 article_sigma_t(
 // Cost: 3 exp, 3 exp a step; 8 steps.
 metal::float3 article_transmittance(
     metal::float3 from_m_8,
-    metal::float3 to_m_6
+    metal::float3 to_m_7
 ) {
     metal::float3 sum_5 = metal::float3(0.0);
     int i_12 = 0;
-    metal::float3 ds = (to_m_6 - from_m_8) / metal::float3(8.0);
+    metal::float3 ds = (to_m_7 - from_m_8) / metal::float3(8.0);
     bool loop_init_13 = true;
     while(true) {
         if (!loop_init_13) {

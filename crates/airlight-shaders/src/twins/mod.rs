@@ -3,6 +3,7 @@
 //! The tests run both on the same inputs. Use the twins to compute on the CPU what a shader computes, for instance parameters
 //! that are the same for all pixels. The WGSL files document the functions, with their costs and errors.
 
+pub mod air;
 pub mod article;
 pub mod colour;
 pub mod columns;

@@ -6,6 +6,7 @@ mod colour;
 mod fog;
 mod fog_table;
 mod lights;
+mod marched_air;
 mod phase;
 mod shadows;
 mod sky_tables;
@@ -48,6 +49,7 @@ pub fn all() -> Vec<Row> {
     all.extend(air::path_optics());
     all.extend(air::columns());
     all.extend(fog::fog());
+    all.extend(marched_air::marched_air());
     all.extend(lights::lights());
     all.extend(shadows::shadows());
     all.extend(sky_tables::sky_tables());
