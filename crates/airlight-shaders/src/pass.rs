@@ -9,12 +9,15 @@ use airlight::named;
 pub enum Pass {
     /// Exponential height fog over a frame with its depth.
     Fog,
+    /// Sky and aerial perspective from tables.
+    Sky,
     /// The sky article's scene.
     SkyArticle,
 }
 
 named! { Pass, "a pass of the shader library", [
     ("fog-pass", (Fog), "adds exponential height fog, lit by the sun and the sky, to a frame with its depth"),
+    ("sky-pass", (Sky), "draws sky and ground and puts the air in front of geometry, from tables"),
     ("sky-article-pass", (SkyArticle), "draws the sky article's scene: sky, sun's disc, tone curve and dither"),
 ] }
 
@@ -23,6 +26,7 @@ impl Pass {
     pub const fn parts(self) -> &'static [Part] {
         match self {
             Self::Fog => &[Part::Fog, Part::Phase],
+            Self::Sky => &[Part::SkyTables],
             Self::SkyArticle => &[Part::Article, Part::Tone, Part::Dither],
         }
     }
@@ -31,6 +35,7 @@ impl Pass {
     pub const fn text(self) -> &'static str {
         match self {
             Self::Fog => include_str!("../examples/passes/fog_pass.wgsl"),
+            Self::Sky => include_str!("../examples/passes/sky_pass.wgsl"),
             Self::SkyArticle => include_str!("../examples/passes/sky_article_pass.wgsl"),
         }
     }

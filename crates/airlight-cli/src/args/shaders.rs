@@ -27,8 +27,8 @@ The functions take all inputs as parameters; include the file in a shader, after
 it computes and how many exponentials it evaluates.
 
 Vulkan takes SPIR-V with entry points only: `spirv` writes for each part a module airlight-PART.spv, whose compute entry points evaluate
-the functions for rows of a storage buffer, and complete passes: airlight-fog-pass.spv with `fog`, airlight-sky-article-pass.spv with
-`article`. A text beside each names entry points, descriptors and layouts.
+the functions for rows of a storage buffer, and complete passes: airlight-fog-pass.spv with `fog`, airlight-sky-pass.spv with
+`sky-tables`, airlight-sky-article-pass.spv with `article`. A text beside each names entry points, descriptors and layouts.
 
 Examples:
   airlight shaders -o shaders

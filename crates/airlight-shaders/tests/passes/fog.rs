@@ -1,6 +1,7 @@
 //! [`Pass::Fog`].
 
-use crate::frame::{Drawn, FORMAT, both_forms, cleared, texture};
+use crate::camera::{NEAR_M, SIZE, place_of, world_from_clip};
+use crate::frame::{Drawn, FORMAT, both_forms, even_scene, texture};
 use crate::vulkan;
 use airlight::atmosphere::DensityProfile;
 use airlight::axes;
@@ -8,9 +9,8 @@ use airlight::fog::{DirectionalLight, FogLighting, FogScattering, Ground, RgbFog
 use airlight::glam::DVec3;
 use airlight::optics::PhaseFunction;
 use airlight_shaders::Pass;
-use glam::{Mat4, Vec3, Vec4};
+use glam::Vec3;
 
-const SIZE: u32 = 64;
 const EYE: Vec3 = Vec3::new(3.0, 12.0, -4.0);
 const EXTINCTION: [f32; 3] = [0.02, 0.022, 0.025];
 const SCATTERING: [f32; 3] = [0.019, 0.021, 0.024];
@@ -19,30 +19,15 @@ const AMBIENT: [f32; 3] = [0.2, 0.25, 0.3];
 const REFERENCE_M: f32 = 2.0;
 const SCALE_M: f32 = 25.0;
 const MEAN_COSINE: f32 = 0.8;
-const NEAR_M: f32 = 0.5;
 const COLOUR: [f32; 4] = [0.5, 0.25, 0.125, 1.0];
 
 fn sun() -> DVec3 {
     axes::direction(20.0, 15.0)
 }
 
-/// From clip coordinates of a reversed, infinite perspective to the world: a point at the depth `d` is `NEAR_M / d` before the eye.
-fn world_from_clip() -> Mat4 {
-    let forward = Vec3::new(0.2, -0.1, -1.0).normalize();
-    let right = forward.cross(Vec3::Y).normalize();
-    let up = right.cross(forward);
-    let tangent = 0.6 * NEAR_M;
-    Mat4::from_cols(
-        (tangent * right).extend(0.0),
-        (tangent * up).extend(0.0),
-        EYE.extend(1.0),
-        (NEAR_M * forward).extend(0.0),
-    )
-}
-
 /// The uniform of the pass, 16 bytes a row.
 fn uniform() -> Vec<u8> {
-    let mut rows = world_from_clip().to_cols_array().to_vec();
+    let mut rows = world_from_clip(EYE).to_cols_array().to_vec();
     let mut row = |vector: [f32; 3], last: f32| {
         rows.extend(vector);
         rows.push(last);
@@ -65,31 +50,19 @@ fn draw(
     let colours = texture(device, SIZE, FORMAT).create_view(&Default::default());
     let depth_format = wgpu::TextureFormat::Depth32Float;
     let depth = texture(device, SIZE, depth_format).create_view(&Default::default());
-    let textures = [colours.clone(), depth.clone()];
+    let resources = [&colours, &depth].map(wgpu::BindingResource::TextureView);
     let drawn = Drawn::new(
         (device, queue),
         source,
         "add_fog",
         SIZE,
         &uniform(),
-        &textures,
+        &resources,
     );
     let mut frames = Vec::new();
     for &at in depths {
-        let mut encoder = device.create_command_encoder(&Default::default());
-        drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            color_attachments: &[cleared(&colours, COLOUR.map(f64::from))],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &depth,
-                depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(at),
-                    store: wgpu::StoreOp::Store,
-                }),
-                stencil_ops: None,
-            }),
-            ..Default::default()
-        }));
-        frames.push(drawn.frame(encoder));
+        let scene = even_scene(device, [&colours, &depth], COLOUR, at);
+        frames.push(drawn.frame(scene));
     }
     frames
 }
@@ -114,7 +87,6 @@ fn the_pass_draws_the_fog_of_the_library() {
         ground_albedo: [0.0; 3],
     };
     let fog = RgbFog::new(&[layer], Ground::FLAT, &lighting, FogScattering::Single).expect("a fog");
-    let world_from_clip = world_from_clip().as_dmat4();
     // The sky, 50 m and 2 m.
     let depths = [0.0, NEAR_M / 50.0, NEAR_M / 2.0];
     let (_, device, queue) = vulkan::open();
@@ -125,26 +97,14 @@ fn the_pass_draws_the_fog_of_the_library() {
         depths.iter().zip(frames)
     });
     for (depth, frame) in drawn {
-        for row in 0..SIZE {
-            for column in 0..SIZE {
-                let at = |x: u32| 2.0 * (f64::from(x) + 0.5) / f64::from(SIZE) - 1.0;
-                let position = |depth: f64| {
-                    world_from_clip.project_point3(DVec3::new(at(column), -at(row), depth))
-                        - EYE.as_dvec3()
-                };
-                let to_point = position(if *depth > 0.0 { f64::from(*depth) } else { 1.0 });
-                let distance_m = match *depth > 0.0 {
-                    true => to_point.length(),
-                    false => f64::INFINITY,
-                };
-                let path = fog.path(f64::from(EYE.y), to_point.normalize(), distance_m);
-                let right = Vec3::from(path.apply([COLOUR[0], COLOUR[1], COLOUR[2]]));
-                let pixel = (row * SIZE + column) as usize;
-                let got = Vec4::from_slice(&frame[4 * pixel..]);
-                assert_eq!(got.w, 1.0);
-                let error = ((got.truncate() - right) / right).abs().max_element();
-                worst = worst.max(error);
-            }
+        for (pixel, got) in frame.as_chunks::<4>().0.iter().enumerate() {
+            let (direction, distance_m) = place_of(EYE, pixel as u32, *depth);
+            let direction = direction.as_dvec3().normalize();
+            let path = fog.path(f64::from(EYE.y), direction, f64::from(distance_m));
+            let right = Vec3::from(path.apply([COLOUR[0], COLOUR[1], COLOUR[2]]));
+            assert_eq!(got[3], 1.0);
+            let error = ((Vec3::from_slice(got) - right) / right).abs();
+            worst = worst.max(error.max_element());
         }
     }
     println!("worst relative difference {worst:e}");

@@ -54,7 +54,7 @@ pub fn texture(device: &wgpu::Device, size: u32, format: wgpu::TextureFormat) ->
 }
 
 /// Attachment that is cleared to a colour.
-pub fn cleared(
+fn cleared(
     view: &wgpu::TextureView,
     colour: [f64; 4],
 ) -> Option<wgpu::RenderPassColorAttachment<'_>> {
@@ -70,15 +70,38 @@ pub fn cleared(
     })
 }
 
+/// Commands that draw a frame of one colour and one depth.
+pub fn even_scene(
+    device: &wgpu::Device,
+    [colours, depths]: [&wgpu::TextureView; 2],
+    colour: [f32; 4],
+    depth: f32,
+) -> wgpu::CommandEncoder {
+    let mut encoder = device.create_command_encoder(&Default::default());
+    drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &[cleared(colours, colour.map(f64::from))],
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: depths,
+            depth_ops: Some(wgpu::Operations {
+                load: wgpu::LoadOp::Clear(depth),
+                store: wgpu::StoreOp::Store,
+            }),
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    }));
+    encoder
+}
+
 impl<'a> Drawn<'a> {
-    /// A pass with its fragment entry point, its uniform at binding 0 and textures from binding 1 on.
+    /// A pass with its fragment entry point, its uniform at binding 0 and other resources from binding 1 on.
     pub fn new(
         (device, queue): (&'a wgpu::Device, &'a wgpu::Queue),
         source: wgpu::ShaderSource<'_>,
         fragment: &str,
         size: u32,
         uniform: &[u8],
-        textures: &[wgpu::TextureView],
+        resources: &[wgpu::BindingResource<'_>],
     ) -> Self {
         let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: None,
@@ -114,8 +137,7 @@ impl<'a> Drawn<'a> {
             binding: 0,
             resource: uniform.as_entire_binding(),
         }];
-        for (view, binding) in textures.iter().zip(1..) {
-            let resource = wgpu::BindingResource::TextureView(view);
+        for (resource, binding) in resources.iter().cloned().zip(1..) {
             entries.push(wgpu::BindGroupEntry { binding, resource });
         }
         let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
