@@ -16,7 +16,8 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// A solved sky that fills the tables of frames. It needs no device, so that a thread or a worker of a web page can hold it. Cloning is
-/// cheap. It keeps the tables of the last two sources, so that those of a moon are not filled again when only the sun has moved.
+/// cheap. It keeps the tables of the last two sources, so that those of a moon are not filled again when only the sun has moved, and those of
+/// the air not when only the fog has changed.
 #[derive(Clone, Debug)]
 pub struct SkySolver {
     sky: Sky,
@@ -25,11 +26,9 @@ pub struct SkySolver {
     settings: SkySettings,
     fit: Arc<ColourFit>,
     space: RgbSpace,
-    kept: Arc<Mutex<Kept>>,
+    kept: Kept<LitPlace, (SourceTables, Lighting)>,
+    kept_air: Kept<(f64, LightSource), (SourceTables, Lighting)>,
 }
-
-/// The tables of the last sources, the latest last.
-type Kept = VecDeque<(LitPlace, Arc<(SourceTables, Lighting)>)>;
 
 /// What the tables of a source depend on.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,8 +38,41 @@ struct LitPlace {
     fog: Option<Fog>,
 }
 
-/// Number of sources whose tables are kept.
-const MOST_KEPT: usize = 2;
+/// What was computed for the last sources, the latest last. Clones share it.
+#[derive(Clone, Debug)]
+struct Kept<K, T>(Arc<Mutex<VecDeque<KeptValue<K, T>>>>);
+
+/// What was computed, and for what.
+type KeptValue<K, T> = (K, Arc<T>);
+
+impl<K, T> Default for Kept<K, T> {
+    fn default() -> Self {
+        Self(Arc::default())
+    }
+}
+
+impl<K: PartialEq, T> Kept<K, T> {
+    /// Number of sources that are kept.
+    const MOST: usize = 2;
+
+    /// What is kept for a place, or else is made.
+    fn get_or<E>(&self, place: K, make: impl FnOnce() -> Result<T, E>) -> Result<Arc<T>, E> {
+        // A panic of another thread has left whole values behind.
+        let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let find = || Some(lock().iter().find(|(of, _)| *of == place)?.1.clone());
+        let found = match find() {
+            Some(found) => found,
+            None => Arc::new(make()?),
+        };
+        let mut kept = lock();
+        kept.retain(|(of, _)| *of != place);
+        if kept.len() == Self::MOST {
+            kept.pop_front();
+        }
+        kept.push_back((place, found.clone()));
+        Ok(found)
+    }
+}
 
 /// Tables of a frame for one eye: plain data, which [`SkyPasses`](crate::SkyPasses) uploads.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,7 +114,8 @@ impl SkySolver {
             settings: settings.clone(),
             fit: Arc::new(ColourFit::new(atmosphere, settings.suns)?),
             space,
-            kept: Arc::default(),
+            kept: Kept::default(),
+            kept_air: Kept::default(),
         })
     }
 
@@ -110,7 +143,8 @@ impl SkySolver {
         let single = Sky::prepare(self.sky.atmosphere(), &wavelength_grid(), &settings)?;
         Ok(Self {
             single: Some(single),
-            kept: Arc::default(),
+            kept: Kept::default(),
+            kept_air: Kept::default(),
             ..self
         })
     }
@@ -169,26 +203,7 @@ impl SkySolver {
             source,
             fog: fog.cloned(),
         };
-        // A panic of another thread has left whole tables behind.
-        let kept = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        let keep = |lit: &Arc<(SourceTables, Lighting)>| {
-            let mut kept = kept();
-            kept.retain(|(of, _)| *of != place);
-            if kept.len() == MOST_KEPT {
-                kept.pop_front();
-            }
-            kept.push_back((place.clone(), lit.clone()));
-        };
-        let found = kept()
-            .iter()
-            .find(|(of, _)| *of == place)
-            .map(|(_, lit)| lit.clone());
-        let lit = match found {
-            Some(lit) => lit,
-            None => Arc::new(self.fill(height_m, source, fog)?),
-        };
-        keep(&lit);
-        Ok(lit)
+        self.kept.get_or(place, || self.fill(height_m, source, fog))
     }
 
     /// Fills the tables of the light of a source, and its light at the eye.
@@ -200,22 +215,31 @@ impl SkySolver {
     ) -> Result<(SourceTables, Lighting), SkyRendererError> {
         check(height_m, &source)?;
         fog.map_or(Ok(()), Fog::validate)?;
+        let in_air = || self.fill_air(height_m, source);
+        let in_air = self.kept_air.get_or((height_m, source), in_air)?;
+        let (mut tables, mut lighting) = (*in_air).clone();
+        if let Some(fog) = fog {
+            let lit = self.lit_fog(fog, source, &tables.sky)?;
+            let sky = tables.sky.over_ground_in_part(ground_share(&lit));
+            let frame = fog.frame(height_m, &lit, &sky)?;
+            let to_sun = frame.path(lighting.sun).transmittance;
+            lighting = lighting.in_fog(to_sun, |d| frame.in_front_of(sky.rgb_radiance(d), d));
+            (tables.sky, tables.fog) = (sky, Some(frame));
+        }
+        Ok((tables, lighting))
+    }
+
+    /// Fills the tables of the light of a source in the air, without fog.
+    fn fill_air(
+        &self,
+        height_m: f64,
+        source: LightSource,
+    ) -> Result<(SourceTables, Lighting), SkyRendererError> {
         let view = self.sky.try_view(height_m, source)?;
         let split = view.split();
-        let mut sky = SkyTables::of(&split, &self.fit, self.space)?;
+        let sky = SkyTables::of(&split, &self.fit, self.space)?;
         let direct = self.fit.sun_illuminance_lx(&view, self.space)?;
         let lighting = Lighting::new(split.table(), &sky, direct);
-        let (fog, lighting) = match fog {
-            Some(fog) => {
-                let lit = self.lit_fog(fog, source, &sky)?;
-                sky = sky.over_ground_in_part(ground_share(&lit));
-                let frame = fog.frame(height_m, &lit, &sky)?;
-                let to_sun = frame.path(lighting.sun).transmittance;
-                let in_fog = lighting.in_fog(to_sun, |d| frame.in_front_of(sky.rgb_radiance(d), d));
-                (Some(frame), in_fog)
-            }
-            None => (None, lighting),
-        };
         let single = match &self.single {
             Some(single) => {
                 let view = single.try_view(height_m, source)?;
@@ -227,7 +251,7 @@ impl SkySolver {
             sky,
             disc: DiscTable::new(&view),
             single,
-            fog,
+            fog: None,
         };
         Ok((tables, lighting))
     }

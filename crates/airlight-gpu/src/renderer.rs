@@ -62,12 +62,20 @@ pub struct SkyRenderer {
     drawn: Option<Place>,
     /// Tables that are being filled, and what they are for.
     filling: Option<(JoinHandle<Result<FrameTables, SkyRendererError>>, Place)>,
+    /// Number of the air of the solver.
+    air: u64,
+    /// Air that is being solved for.
+    solving: Option<(JoinHandle<Result<SkySolver, SkyRendererError>>, Atmosphere)>,
+    /// Air to solve for next.
+    next_air: Option<Atmosphere>,
     work: Work,
 }
 
 /// What tables are for.
 #[derive(Clone, Debug, PartialEq)]
 struct Place {
+    /// Number of the air.
+    air: u64,
     /// Height of the eye above sea level, m.
     height_m: f64,
     first: LightSource,
@@ -98,6 +106,9 @@ impl SkyRenderer {
             has_lights: false,
             drawn: None,
             filling: None,
+            air: 0,
+            solving: None,
+            next_air: None,
             work: Work::default(),
         })
     }
@@ -115,7 +126,12 @@ impl SkyRenderer {
     ) -> Result<(), SkyRendererError> {
         let mut passes = self.passes.on_device(device, queue)?;
         if let Some(place) = &self.drawn {
-            passes.set_tables(&self.fill(place)()?);
+            let place = Place {
+                air: self.air,
+                ..place.clone()
+            };
+            passes.set_tables(&self.fill(&place)()?);
+            self.drawn = Some(place);
             self.work.tables += 1;
         }
         self.passes = passes;
@@ -134,10 +150,63 @@ impl SkyRenderer {
 
     /// As [`Self::set_atmosphere`], with what another thread has solved: see [`SkySolver::in_atmosphere`] of [`Self::solver`].
     pub fn set_solver(&mut self, solver: SkySolver) {
+        (self.solving, self.next_air) = (None, None);
+        self.replace_solver(solver);
+    }
+
+    /// As [`Self::set_atmosphere`], but solves on a thread of its own and returns at once, so that a program that calls this and
+    /// [`Self::update_in_background`] before each frame keeps its pace while the air changes, as when a slider is dragged. Frames are drawn
+    /// with the last tables until those in other air are filled. While air is being solved for, the last one that was set waits; each that
+    /// has been solved for is drawn, and the last one in the end. Where threads cannot be started, as in a browser, it solves at once.
+    ///
+    /// # Errors
+    /// [`SkyRendererError`] if the sky cannot be solved, in this call or in a later one of [`Self::update_in_background`]; frames go on in
+    /// the air before.
+    pub fn set_atmosphere_in_background(
+        &mut self,
+        atmosphere: &Atmosphere,
+    ) -> Result<(), SkyRendererError> {
+        let solving = self.solving.as_ref().map(|(_, air)| air);
+        let solved = self.solver.sky().atmosphere();
+        if self.next_air.as_ref().or(solving).unwrap_or(solved) != atmosphere {
+            self.next_air = Some(atmosphere.clone());
+        }
+        self.solve_next()
+    }
+
+    /// Starts to solve for the air that waits, unless other air is being solved for.
+    fn solve_next(&mut self) -> Result<(), SkyRendererError> {
+        if self.solving.is_some() {
+            return Ok(());
+        }
+        let Some(air) = self.next_air.take() else {
+            return Ok(());
+        };
+        let (solver, of_thread) = (self.solver.clone(), air.clone());
+        match std::thread::Builder::new().spawn(move || solver.in_atmosphere(&of_thread)) {
+            Ok(thread) => self.solving = Some((thread, air)),
+            Err(_) => self.replace_solver(self.solver.in_atmosphere(&air)?),
+        }
+        Ok(())
+    }
+
+    /// Takes what has been solved in the background, and goes on with the air that waits.
+    fn take_solved(&mut self) -> Result<(), SkyRendererError> {
+        let Some((thread, _)) = self.solving.take_if(|(t, _)| t.is_finished()) else {
+            return Ok(());
+        };
+        let solved = thread.join().unwrap_or_else(|panic| resume_unwind(panic));
+        if let Ok(solver) = &solved {
+            self.replace_solver(solver.clone());
+        }
+        self.solve_next()?;
+        solved.map(|_| ())
+    }
+
+    /// Fills tables with another solver. Those that are being filled with the one before are drawn until then.
+    fn replace_solver(&mut self, solver: SkySolver) {
         self.solver = solver;
-        self.drawn = None;
-        // Its tables hold the air before.
-        self.filling = None;
+        self.air += 1;
     }
 
     /// Sets the height of the eye above sea level, m, and the sun, by its direction or with its distance, or another source in its
@@ -151,10 +220,15 @@ impl SkyRenderer {
         height_m: f64,
         sun: impl Into<LightSource>,
     ) -> Result<(), SkyRendererError> {
-        let place = self.place(height_m, sun.into())?;
+        let sun = sun.into();
         self.check_device()?;
+        check(height_m, &sun)?;
+        self.take_solved()?;
+        let place = self.place(height_m, sun);
         if !self.is_drawn(&place) {
             let tables = self.fill(&place)()?;
+            // Those that are being filled are for a moment before.
+            self.filling = None;
             self.show(&tables, place);
         }
         Ok(())
@@ -208,7 +282,7 @@ impl SkyRenderer {
 
     /// As [`SkyRenderer::update`], but fills the tables on a thread of their own. Until they are filled, frames are drawn with the last
     /// ones, so that a program that calls this before each frame keeps its pace while the sun moves. True if the tables are those
-    /// of this eye and sun. Where threads cannot be started, as in a browser, it fills the tables at once.
+    /// of this eye and sun, in the air that was set last. Where threads cannot be started, as in a browser, it fills the tables at once.
     ///
     /// # Errors
     /// As [`SkyRenderer::update`], in this or in a later call.
@@ -220,8 +294,11 @@ impl SkyRenderer {
         height_m: f64,
         sun: impl Into<LightSource>,
     ) -> Result<bool, SkyRendererError> {
-        let place = self.place(height_m, sun.into())?;
+        let sun = sun.into();
         self.check_device()?;
+        check(height_m, &sun)?;
+        self.take_solved()?;
+        let place = self.place(height_m, sun);
         if let Some((thread, filled_for)) = self.filling.take_if(|(t, _)| t.is_finished()) {
             let tables = thread.join().unwrap_or_else(|panic| resume_unwind(panic))?;
             self.show(&tables, filled_for);
@@ -232,7 +309,7 @@ impl SkyRenderer {
                 Err(_) => self.update(height_m, place.first)?,
             }
         }
-        Ok(self.is_drawn(&place))
+        Ok(self.is_drawn(&place) && self.solving.is_none())
     }
 
     fn check_device(&self) -> Result<(), SkyRendererError> {
@@ -242,14 +319,14 @@ impl SkyRenderer {
         }
     }
 
-    fn place(&self, height_m: f64, first: LightSource) -> Result<Place, SkyRendererError> {
-        check(height_m, &first)?;
-        Ok(Place {
+    fn place(&self, height_m: f64, first: LightSource) -> Place {
+        Place {
+            air: self.air,
             height_m,
             first,
             second: self.second,
             fog: self.fog.clone(),
-        })
+        }
     }
 
     fn is_drawn(&self, place: &Place) -> bool {

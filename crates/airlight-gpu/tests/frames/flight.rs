@@ -4,7 +4,7 @@ use super::valley_fog;
 use airlight::atmosphere::{DensityProfile, Preset};
 use airlight::axes;
 use airlight::glam::DVec3;
-use airlight::sky::SkySettings;
+use airlight::sky::{SkySettings, View};
 use airlight::spectrum::RgbSpace;
 use airlight_gpu::{FrameTables, SkySolver};
 
@@ -19,18 +19,8 @@ fn drawn(tables: &FrameTables, direction: DVec3) -> f64 {
 }
 
 /// Luminance of the solver's light along a direction, in the colours of the tables.
-fn right(
-    solver: &SkySolver,
-    tables: &FrameTables,
-    height_m: f64,
-    sun: DVec3,
-    direction: DVec3,
-) -> f64 {
-    let light = solver
-        .sky()
-        .view(height_m, sun)
-        .along(direction, None)
-        .radiance();
+fn right(view: &View, tables: &FrameTables, direction: DVec3) -> f64 {
+    let light = view.along(direction, None).radiance();
     let weights = tables.first.sky.radiance_weights;
     let channels = [weights.red, weights.green, weights.blue];
     let rgb = channels.map(|weights| {
@@ -68,6 +58,7 @@ fn an_eye_climbs_from_the_sea_to_space_without_a_seam() {
         let mut worst = [(0.0f64, 0.0, String::new()), (0.0, 0.0, String::new())];
         for height_m in heights_m(top_m) {
             let tables = solver.tables(height_m, sun, None).unwrap();
+            let view = solver.sky().view(height_m, sun);
             let horizon_deg = f64::from(tables.first.sky.view.horizon_rad).to_degrees();
             let fixed = [80.0, 20.0, 4.0, 1.0, -1.0, -4.0, -20.0, -80.0];
             let beside = [3.0, 0.3, -0.3, -3.0].map(|angle| horizon_deg + angle);
@@ -81,10 +72,7 @@ fn an_eye_climbs_from_the_sea_to_space_without_a_seam() {
                 .iter()
                 .map(|&(azimuth_deg, elevation_deg)| {
                     let direction = axes::direction(azimuth_deg, elevation_deg.max(-90.0));
-                    [
-                        drawn(&tables, direction),
-                        right(&solver, &tables, height_m, sun, direction),
-                    ]
+                    [drawn(&tables, direction), right(&view, &tables, direction)]
                 })
                 .collect();
             let brightest = light.iter().map(|[_, right]| *right).fold(0.0, f64::max);

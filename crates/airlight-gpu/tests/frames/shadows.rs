@@ -24,7 +24,7 @@ const EYE_M: DVec3 = DVec3::new(-3000.0, 300.0, 500.0);
 const STEPS: usize = 200;
 const EXPOSURE: f32 = 1e-4;
 
-fn sun() -> DVec3 {
+pub fn sun() -> DVec3 {
     axes::direction(90.0, SUN_DEG)
 }
 
@@ -59,7 +59,7 @@ fn is_above_shadow(field: &HeightField, planet_radius_m: f64, point: DVec3) -> b
 }
 
 /// A disc that faces the sun, 250 m from the eye and 150 m in radius, and what a shadow map shows of it.
-struct Disc {
+pub struct Disc {
     middle: DVec3,
     radius_m: f64,
 }
@@ -67,9 +67,9 @@ struct Disc {
 impl Disc {
     /// Half the width of the map, and half its depth, m.
     const HALF_M: [f64; 2] = [450.0, 1000.0];
-    const SIDE: u32 = 1024;
+    pub const SIDE: u32 = 1024;
 
-    fn new() -> Self {
+    pub fn new() -> Self {
         Self {
             middle: axes::direction(60.0, 25.0) * 250.0,
             radius_m: 150.0,
@@ -87,7 +87,7 @@ impl Disc {
         behind.z > 0.0 || behind.truncate().length() > self.radius_m
     }
 
-    fn clip_from_world(&self) -> Mat4 {
+    pub fn clip_from_world(&self) -> Mat4 {
         let [half_m, depth_m] = Self::HALF_M;
         let turn = Mat4::from_mat3(Mat3::from_cols_array(
             &Self::axes().transpose().to_cols_array().map(|v| v as f32),
@@ -101,7 +101,7 @@ impl Disc {
     }
 
     /// Depths that increase away from the sun.
-    fn map(&self, gpu: &Headless) -> wgpu::TextureView {
+    pub fn map(&self, gpu: &Headless) -> wgpu::TextureView {
         let texel_m = 2.0 * Self::HALF_M[0] / f64::from(Self::SIDE);
         let middle = Self::axes().transpose() * self.middle;
         let depth = |k: u32| {
