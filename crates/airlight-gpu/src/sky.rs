@@ -60,9 +60,12 @@ fn numbers(source: &SourceTables, scales: SkyScales) -> Vec<f32> {
         tables.view.dense_azimuth,
         tables.view.dense_width,
         tables.view.even_below,
-        0.0,
+        tables.view.jump_height_m,
         0.0,
     ]);
+    all.extend(tables.view.extinction_above.to_array());
+    all.extend(tables.view.smooth_above.to_array());
+    all.extend(tables.view.haze_above.to_array());
     all.extend(scales.smooth_light.to_array());
     all.extend(scales.haze.to_array());
     let mut add = |weights: &RgbWeights| {

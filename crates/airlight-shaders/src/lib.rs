@@ -36,6 +36,7 @@ mod fog_tables;
 mod function;
 #[cfg(feature = "translate")]
 mod interface;
+mod jump;
 #[cfg(feature = "translate")]
 mod language;
 mod part;

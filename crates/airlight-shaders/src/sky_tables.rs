@@ -1,6 +1,7 @@
 //! [`SkyTables`]: the tables of `wgsl/sky_tables.wgsl`, filled from a solved sky.
 
 use crate::colour_fit::ColourFit;
+use crate::jump::Jump;
 use crate::twins::colour::{RgbWeights, rgb_from_spectrum};
 use crate::twins::path_optics::PathOptics;
 use crate::twins::sky_tables as twin;
@@ -29,11 +30,13 @@ pub struct SkyTables {
     pub sky_smooth: Texture,
     /// Logarithm of the radiance that haze scatters once, divided by its phase function.
     pub sky_haze: Texture,
-    /// Source function of the path radiance, as `sky_smooth`.
+    /// Source function of the path radiance, as `sky_smooth`, and relative to [`twin::SkyView::smooth_above`] and
+    /// [`twin::SkyView::extinction_above`].
     pub aerial_smooth: Texture,
-    /// Source function of the path radiance, as `sky_haze`.
+    /// Source function of the path radiance, as `sky_haze`, and relative to [`twin::SkyView::haze_above`] and
+    /// [`twin::SkyView::extinction_above`].
     pub aerial_haze: Texture,
-    /// Mean extinction, 1/km.
+    /// Mean extinction, 1/km, relative to [`twin::SkyView::extinction_above`].
     pub extinction: Texture,
     /// Phase function of haze, 1/sr.
     pub phase: Texture,
@@ -80,15 +83,16 @@ impl SkyTables {
             return Err(SkyTablesError::Wavelengths(wavelengths_nm));
         }
         let place = Eye::new(view);
-        let sky_view = sky_view(view, &place.coordinates);
+        let jump = Jump::nearest(split, &place.coordinates);
+        let sky_view = sky_view(view, &place.coordinates, &jump);
         let mut sky = sky(split, &place);
-        begin_at_kink(&mut sky.1, sky_size(), &place, SKY_ROWS);
+        begin_at_kink(&mut sky.1, &place);
         let scales = twin::SkyScales {
             smooth_light: scale(&sky.0),
             haze: scale(&sky.1),
         };
         let mut aerial = aerial(split, &place, &sky_view);
-        begin_at_kink(&mut aerial.haze, aerial_size(), &place, AERIAL_ROWS);
+        begin_haze(&mut aerial.haze, &jump);
         let [radiance_weights, transmittance_weights, disc_weights] =
             rgb_weights(view, fit, space)?;
         Ok(Self {
@@ -204,7 +208,7 @@ impl SingleScatteringTable {
 }
 
 /// What the shader functions know of a view.
-fn sky_view(view: &View, coordinates: &TableCoordinates) -> twin::SkyView {
+fn sky_view(view: &View, coordinates: &TableCoordinates, jump: &Jump) -> twin::SkyView {
     let (ground_radius_m, top_radius_m) = view.bounds_m();
     twin::SkyView {
         sun: view.sun().as_vec3(),
@@ -219,6 +223,10 @@ fn sky_view(view: &View, coordinates: &TableCoordinates) -> twin::SkyView {
         dense_azimuth: coordinates.dense_azimuth as f32,
         dense_width: coordinates.dense_width as f32,
         even_below: coordinates.even_below as f32,
+        jump_height_m: jump.height_m,
+        extinction_above: jump.extinction,
+        smooth_above: jump.smooth,
+        haze_above: jump.haze,
     }
 }
 
@@ -323,33 +331,38 @@ fn aerial(split: &SplitView, eye: &Eye, view: &twin::SkyView) -> Aerial {
         rays.push((directions.collect(), stops_m));
     }
     let paths = split.many_paths(&rays);
+    // Relative to what is below a jump of density, so that nothing jumps.
+    let length_m = |row: usize, step: usize| (rays[row].1[step] - starts_m[row]) as f32;
+    let share = |row: usize, step: usize| {
+        let (elevation, is_below) = eye.elevation(row, AERIAL_ROWS);
+        let sine = elevation.sin() as f32;
+        let span = twin::air_span_m(*view, sine, is_below);
+        twin::share_below_jump(*view, span, sine, length_m(row, step), is_below)
+    };
+    let relative = |above: Vec4, share: f32| above.lerp(Vec4::ONE, share);
     let mut smooth = vec![Vec4::ZERO; columns * rows * distances];
     let mut haze = smooth.clone();
     for (index, path) in paths.iter().flatten().enumerate() {
         for (step, stop) in path.iter().enumerate() {
             let texel = step * columns * rows + index;
+            let share = share(index / columns, step);
             let opacity = vec4(&stop.optical_depth).map_lanes(|depth| -(-depth).exp_m1());
-            smooth[texel] = source(&stop.smooth, opacity);
-            haze[texel] = source(&stop.peaked, opacity);
-        }
-    }
-    let layer = columns * rows;
-    for texel in (0..layer * (distances - 1)).rev() {
-        if haze[texel] == Vec4::ZERO {
-            haze[texel] = BEGINNING * haze[texel + layer];
+            let opacity = opacity / relative(view.extinction_above, share);
+            smooth[texel] = source(&stop.smooth, opacity) / relative(view.smooth_above, share);
+            haze[texel] = source(&stop.peaked, opacity) / relative(view.haze_above, share);
         }
     }
     let mut extinction = Vec::with_capacity(rows * distances);
     for row in 0..rows {
-        let (_, stops_m) = &rays[row];
-        let mean = |(stop, stop_m): (&SplitPath, &f64)| {
-            let length_km = (1e-3 * (stop_m - starts_m[row])) as f32;
+        let mean = |(step, stop): (usize, &SplitPath)| {
+            let length_km = 1e-3 * length_m(row, step);
+            let relative = relative(view.extinction_above, share(row, step));
             match length_km > 0.0 {
-                true => vec4(&stop.optical_depth) / length_km,
+                true => vec4(&stop.optical_depth) / (length_km * relative),
                 false => Vec4::ZERO,
             }
         };
-        extinction.extend(paths[row][0].iter().zip(stops_m).map(mean));
+        extinction.extend(paths[row][0].iter().enumerate().map(mean));
     }
     Aerial {
         smooth,
@@ -358,22 +371,37 @@ fn aerial(split: &SplitView, eye: &Eye, view: &twin::SkyView) -> Aerial {
     }
 }
 
-/// Gives the row of rays that graze a jump of density, if they meet no haze, a part of the light of the next row below, where haze begins:
-/// from there the light grows with the square root of the angle, which is that of the place, and logarithms would start at nothing.
-fn begin_at_kink(
-    haze: &mut [Vec4],
-    [columns, rows, layers]: [usize; 3],
-    eye: &Eye,
-    [above, _]: [usize; 2],
-) {
-    let row = (eye.coordinates.kink_place * (above - 1) as f64).round() as usize;
+/// Gives texels of aerial perspective without haze, from which haze begins at the next distance or in the next row below, what they tend
+/// to as it begins: relative to a jump that bounds the haze the light of the neighbour, otherwise a part of that.
+fn begin_haze(haze: &mut [Vec4], jump: &Jump) {
+    let [columns, rows, distances] = aerial_size();
+    let layer = columns * rows;
+    let part = if jump.bounds_haze() { 1.0 } else { BEGINNING };
+    for texel in (0..layer * (distances - 1)).rev() {
+        if haze[texel] == Vec4::ZERO {
+            haze[texel] = part * haze[texel + layer];
+        }
+    }
+    if jump.bounds_haze() {
+        for texel in 0..haze.len() {
+            let row = texel % layer / columns;
+            if haze[texel] == Vec4::ZERO && (1..AERIAL_ROWS[0]).contains(&row) {
+                haze[texel] = haze[texel - columns];
+            }
+        }
+    }
+}
+
+/// Gives the row of the sky's rays that graze a jump of density, if they meet no haze, a part of the light of the next row below, where haze
+/// begins: from there the light grows with the square root of the angle, which is that of the place, and logarithms would start at nothing.
+fn begin_at_kink(haze: &mut [Vec4], eye: &Eye) {
+    let row = (eye.coordinates.kink_place * (SKY_ROWS[0] - 1) as f64).round() as usize;
     if row == 0 {
         return;
     }
-    for first in (0..layers).map(|layer| (layer * rows + row) * columns) {
-        for at_kink in first..first + columns {
-            haze[at_kink] = haze[at_kink].max(BEGINNING * haze[at_kink - columns]);
-        }
+    let first = row * SKY_COLUMNS;
+    for at_kink in first..first + SKY_COLUMNS {
+        haze[at_kink] = haze[at_kink].max(BEGINNING * haze[at_kink - SKY_COLUMNS]);
     }
 }
 
@@ -498,7 +526,7 @@ mod tests {
         let (mut kinks, mut dense) = (0, 0);
         for view in views() {
             let exact = view.table_coordinates();
-            let twin_view = sky_view(&view, &exact);
+            let twin_view = sky_view(&view, &exact, &Jump::NONE);
             kinks += usize::from(exact.kink_place > 0.0);
             dense += usize::from(exact.dense_share > 0.0);
             for k in 0..=1000 {

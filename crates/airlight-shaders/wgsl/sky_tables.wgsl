@@ -2,7 +2,8 @@
 // Skies and aerial perspective from tables at four wavelengths, made for one position of the eye and one of the sun and fixed to
 // the world's axes: nothing changes when the camera turns. World axes: y up at the eye. Two tables hold the sky, as logarithms
 // of normalised radiance: the light that haze scatters once, divided by its phase function, and all other light. Two more hold
-// the source function of aerial perspective in the same way, and one the mean extinction.
+// the source function of aerial perspective in the same way, and one the mean extinction: as if the whole ray were below the jump of
+// density that is nearest to the eye, so that they do not jump where rays pass it.
 
 /// Columns of a sky table, from the azimuth of the sun to the opposite one.
 const SKY_AZIMUTHS: f32 = 64.0;
@@ -35,7 +36,8 @@ struct SkyView {
     horizon_rad: f32,
     /// Elevation above which a ray meets no air, rad: the zenith, or from space the limb.
     highest_rad: f32,
-    /// Elevation of the rays that graze the highest jump of density below the eye, rad; that of the horizon without one.
+    /// Elevation of the rays that graze the highest jump of density below the eye, rad, or 0 just below a jump; that of the horizon
+    /// without one.
     kink_rad: f32,
     /// Place of the row at that elevation, 0 to 1.
     kink_place: f32,
@@ -47,6 +49,14 @@ struct SkyView {
     dense_width: f32,
     /// Share of the rows below the horizon that are as dense at the nadir as from far away: the sine of the angle by which the horizon dips.
     even_below: f32,
+    /// Height above the ground of the jump of density that is nearest to the eye, m.
+    jump_height_m: f32,
+    /// Extinction just above that jump relative to that just below it; 1 without a jump.
+    extinction_above: vec4<f32>,
+    /// Smooth light that a metre of air scatters just above that jump relative to one just below it; 1 without a jump.
+    smooth_above: vec4<f32>,
+    /// Light that a metre of haze scatters once just above that jump relative to one just below it; 1 without a jump.
+    haze_above: vec4<f32>,
 }
 
 /// Factors from the normalised values in tables to radiance, at four wavelengths.
@@ -234,6 +244,28 @@ fn air_span_m(view: SkyView, sin_elevation: f32, meets_ground: bool) -> vec2<f32
     return vec2<f32>(start, max(end, start));
 }
 
+/// Part of the way of a ray through the air, up to a length, that is below the jump of density nearest to the eye.
+///
+/// Cost: no exp. Error: 1e-3 absolute.
+fn share_below_jump(view: SkyView, span_m: vec2<f32>, sin_elevation: f32, length_m: f32, meets_ground: bool) -> f32 {
+    let b = (view.ground_radius_m + view.height_m) * sin_elevation;
+    let over_jump = (view.height_m - view.jump_height_m) * (2.0 * view.ground_radius_m + view.height_m + view.jump_height_m);
+    let squared_root = b * b - over_jump;
+    if over_jump > 0.0 && (b >= 0.0 || squared_root <= 0.0) {
+        return 0.0;
+    }
+    let root = sqrt(max(squared_root, 0.0));
+    let entry = select(0.0, over_jump / (root - b), over_jump > 0.0);
+    var exit = root - b;
+    if meets_ground {
+        exit = span_m.y;
+    } else if b > 0.0 {
+        exit = -over_jump / (root + b);
+    }
+    let below_m = min(span_m.x + length_m, exit) - max(span_m.x, entry);
+    return clamp(below_m / max(length_m, 1e-6), 0.0, 1.0);
+}
+
 /// Length of the first step between the distances of a ray with an interval in the air, relative to even steps. From inside the air
 /// distances are dense near the eye, at the square of the place: 0; from above it towards the ground, where most air is, dense there: 2.
 /// Steep rays from high in the air are between.
@@ -322,7 +354,7 @@ fn sky_radiance(
 }
 
 /// Air between the eye and a point at a distance along a direction, at four wavelengths. The extinction table holds the mean
-/// extinction from the first air on, 1/km.
+/// extinction from the first air on, 1/km, as if all of it were below the jump of density nearest to the eye.
 ///
 /// Cost: 12 exp, 4 reads. Error: 3e-3 relative plus 1e-5 absolute.
 fn aerial_perspective(
@@ -343,6 +375,8 @@ fn aerial_perspective(
     if length_m <= 0.0 || elevation_rad > view.highest_rad {
         return SpectralPath(vec4<f32>(1.0), vec4<f32>(0.0));
     }
+    let share = share_below_jump(view, span, direction.y, length_m, is_below);
+    let extinction = mix(view.extinction_above, vec4<f32>(1.0), share);
     let place = distance_place(view, span, length_m, is_below);
     let row = row_coordinate(view, elevation_rad, is_below, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
     let uvw = vec3<f32>(
@@ -351,11 +385,13 @@ fn aerial_perspective(
         texel_coordinate(place, AERIAL_DISTANCES),
     );
     let phase = haze_phase(phase_table, linear_sampler, one_minus_cos_between(direction, view.sun));
-    let depth = textureSampleLevel(extinction_table, linear_sampler, uvw.zy, 0.0) * (length_m * 1e-3);
-    let smooth_light = exp(textureSampleLevel(smooth_table, linear_sampler, uvw, 0.0)) * scales.smooth_light;
-    let haze = exp(textureSampleLevel(haze_table, linear_sampler, uvw, 0.0)) * scales.haze;
+    let depth = textureSampleLevel(extinction_table, linear_sampler, uvw.zy, 0.0) * extinction * (length_m * 1e-3);
+    var smooth_light = exp(textureSampleLevel(smooth_table, linear_sampler, uvw, 0.0)) * scales.smooth_light;
+    var haze = exp(textureSampleLevel(haze_table, linear_sampler, uvw, 0.0)) * scales.haze;
+    smooth_light *= mix(view.smooth_above, vec4<f32>(1.0), share);
+    haze *= mix(view.haze_above, vec4<f32>(1.0), share);
     let opacity = depth * vec4<f32>(mean_transmittance_rgb(depth.xyz), mean_transmittance(depth.w));
-    return SpectralPath(1.0 - opacity, (smooth_light + haze * phase) * opacity);
+    return SpectralPath(1.0 - opacity, (smooth_light + haze * phase) / extinction * opacity);
 }
 
 /// Transmittance of the air between the eye and a point at a distance along a direction, at four wavelengths: that of
@@ -376,10 +412,12 @@ fn aerial_transmittance(
     if length_m <= 0.0 || elevation_rad > view.highest_rad {
         return vec4<f32>(1.0);
     }
+    let share = share_below_jump(view, span, direction.y, length_m, is_below);
+    let extinction = mix(view.extinction_above, vec4<f32>(1.0), share);
     let place = distance_place(view, span, length_m, is_below);
     let row = row_coordinate(view, elevation_rad, is_below, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
     let uv = vec2<f32>(texel_coordinate(place, AERIAL_DISTANCES), row);
-    return exp(textureSampleLevel(extinction_table, linear_sampler, uv, 0.0) * (length_m * -1e-3));
+    return exp(textureSampleLevel(extinction_table, linear_sampler, uv, 0.0) * extinction * (length_m * -1e-3));
 }
 
 /// Transmittance and path radiance in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.

@@ -155,8 +155,11 @@ struct SkyView {
     float dense_azimuth;
     float dense_width;
     float even_below;
-    int _end_pad_0;
-    int _end_pad_1;
+    float jump_height_m;
+    int _pad13_0;
+    float4 extinction_above;
+    float4 smooth_above;
+    float4 haze_above;
 };
 
 struct SkyScales {
@@ -1568,9 +1571,9 @@ float2 lit_interval(LightRay ray_14, float cos_angle)
     float to_m_4 = INFINITE_M;
     bool local_14 = (bool)0;
 
-    float length_m_15 = ray_14.geometry.length_m;
+    float length_m_16 = ray_14.geometry.length_m;
     if ((ray_14.light.kind != LIGHT_SPOT)) {
-        return float2(0.0, length_m_15);
+        return float2(0.0, length_m_16);
     }
     float h_3 = ray_14.geometry.nearest_m;
     float across = (ray_14.across_m / h_3);
@@ -1611,7 +1614,7 @@ float2 lit_interval(LightRay ray_14, float cos_angle)
     }
     float _e94 = from_m_4;
     float _e95 = to_m_4;
-    float2 interval = clamp((float2(_e94, _e95) - (ray_14.geometry.start_m).xx), (0.0).xx, (length_m_15).xx);
+    float2 interval = clamp((float2(_e94, _e95) - (ray_14.geometry.start_m).xx), (0.0).xx, (length_m_16).xx);
     return ((interval.y > interval.x) ? interval : (0.0).xx);
 }
 
@@ -2242,18 +2245,59 @@ float2 air_span_m(SkyView view_8, float sin_elevation_9, bool meets_ground)
     return float2(start_4, max(_e50, start_4));
 }
 
-// Length of the first step between the distances of a ray with an interval in the air, relative to even steps. From inside the air distances are dense near the eye, at the square of the place: 0; from above it towards the ground, where most air is, dense there: 2. Steep rays from high in the air are between.
+// Part of the way of a ray through the air, up to a length, that is below the jump of density nearest to the eye.
 // Cost: no exp.
-float first_step(SkyView view_9, float2 span_m, bool meets_ground_1)
+float share_below_jump(SkyView view_9, float2 span_m, float sin_elevation_10, float length_m_14, bool meets_ground_1)
 {
-    if ((view_9.height_m >= view_9.air_height_m)) {
-        return (meets_ground_1 ? 2.0 : 1.0);
+    bool local_17 = (bool)0;
+    bool local_18 = (bool)0;
+    float exit = (float)0;
+
+    float b_4 = ((view_9.ground_radius_m + view_9.height_m) * sin_elevation_10);
+    float over_jump = ((view_9.height_m - view_9.jump_height_m) * (((2.0 * view_9.ground_radius_m) + view_9.height_m) + view_9.jump_height_m));
+    float squared_root = ((b_4 * b_4) - over_jump);
+    if ((over_jump > 0.0)) {
+        if (!((b_4 >= 0.0))) {
+            local_18 = (squared_root <= 0.0);
+        } else {
+            local_18 = true;
+        }
+        bool _e34 = local_18;
+        local_17 = _e34;
+    } else {
+        local_17 = false;
     }
-    if (!(meets_ground_1)) {
+    bool _e36 = local_17;
+    if (_e36) {
         return 0.0;
     }
-    float slant = (1.0 - min((view_9.height_m / max(span_m.y, 1.0)), 1.0));
-    float high = min(((2.5 * view_9.height_m) / view_9.air_height_m), 1.0);
+    float root_5 = sqrt(max(squared_root, 0.0));
+    float entry = ((over_jump > 0.0) ? (over_jump / (root_5 - b_4)) : 0.0);
+    exit = (root_5 - b_4);
+    if (meets_ground_1) {
+        exit = span_m.y;
+    } else {
+        if ((b_4 > 0.0)) {
+            exit = (-(over_jump) / (root_5 + b_4));
+        }
+    }
+    float _e57 = exit;
+    float below_m_1 = (min((span_m.x + length_m_14), _e57) - max(span_m.x, entry));
+    return clamp((below_m_1 / max(length_m_14, 1e-6)), 0.0, 1.0);
+}
+
+// Length of the first step between the distances of a ray with an interval in the air, relative to even steps. From inside the air distances are dense near the eye, at the square of the place: 0; from above it towards the ground, where most air is, dense there: 2. Steep rays from high in the air are between.
+// Cost: no exp.
+float first_step(SkyView view_10, float2 span_m_1, bool meets_ground_2)
+{
+    if ((view_10.height_m >= view_10.air_height_m)) {
+        return (meets_ground_2 ? 2.0 : 1.0);
+    }
+    if (!(meets_ground_2)) {
+        return 0.0;
+    }
+    float slant = (1.0 - min((view_10.height_m / max(span_m_1.y, 1.0)), 1.0));
+    float high = min(((2.5 * view_10.height_m) / view_10.air_height_m), 1.0);
     return ((2.0 * high) * (1.0 - (((slant * slant) * slant) * slant)));
 }
 
@@ -2262,8 +2306,8 @@ float first_step(SkyView view_9, float2 span_m, bool meets_ground_1)
 float place_from_part(float part, float first_step_1)
 {
     float last_step = (2.0 - first_step_1);
-    float root_5 = sqrt(((((1.0 - part) * first_step_1) * first_step_1) + ((part * last_step) * last_step)));
-    return ((2.0 * part) / max((first_step_1 + root_5), 1e-20));
+    float root_6 = sqrt(((((1.0 - part) * first_step_1) * first_step_1) + ((part * last_step) * last_step)));
+    return ((2.0 * part) / max((first_step_1 + root_6), 1e-20));
 }
 
 // Inverse of `place_from_part`.
@@ -2275,10 +2319,10 @@ float part_from_place(float place_4, float first_step_2)
 
 // Place from 0 to 1 of a length in the air among the distances of a ray with an interval in the air.
 // Cost: no exp.
-float distance_place(SkyView view_10, float2 span_m_1, float length_m_14, bool meets_ground_2)
+float distance_place(SkyView view_11, float2 span_m_2, float length_m_15, bool meets_ground_3)
 {
-    float part_6 = clamp((length_m_14 / max((span_m_1.y - span_m_1.x), 1e-6)), 0.0, 1.0);
-    const float _e13 = first_step(view_10, span_m_1, meets_ground_2);
+    float part_6 = clamp((length_m_15 / max((span_m_2.y - span_m_2.x), 1e-6)), 0.0, 1.0);
+    const float _e13 = first_step(view_11, span_m_2, meets_ground_3);
     const float _e14 = place_from_part(part_6, _e13);
     return _e14;
 }
@@ -2311,20 +2355,20 @@ float4 haze_phase(Texture2D<float4> phase_table, SamplerState linear_sampler, fl
 
 // Radiance of the sky, or of the ground below the horizon, along a direction at four wavelengths, without the sun's disc.
 // Cost: 8 exp, 3 reads.
-float4 sky_radiance(SkyView view_11, SkyScales scales, Texture2D<float4> smooth_table, Texture2D<float4> haze_table, Texture2D<float4> phase_table_1, SamplerState linear_sampler_1, float3 direction_8)
+float4 sky_radiance(SkyView view_12, SkyScales scales, Texture2D<float4> smooth_table, Texture2D<float4> haze_table, Texture2D<float4> phase_table_1, SamplerState linear_sampler_1, float3 direction_8)
 {
     const float _e7 = elevation_of(direction_8);
-    if ((_e7 > view_11.highest_rad)) {
+    if ((_e7 > view_12.highest_rad)) {
         return (0.0).xxxx;
     }
-    const float2 _e12 = uv_from_direction(view_11, direction_8);
-    const float _e14 = one_minus_cos_between(direction_8, view_11.sun);
+    const float2 _e12 = uv_from_direction(view_12, direction_8);
+    const float _e14 = one_minus_cos_between(direction_8, view_12.sun);
     const float4 _e15 = haze_phase(phase_table_1, linear_sampler_1, _e14);
     float4 _e17 = smooth_table.SampleLevel(linear_sampler_1, _e12, 0.0);
-    float4 smooth_light = (exp(_e17) * scales.smooth_light);
+    float4 smooth_light_1 = (exp(_e17) * scales.smooth_light);
     float4 _e22 = haze_table.SampleLevel(linear_sampler_1, _e12, 0.0);
-    float4 haze = (exp(_e22) * scales.haze);
-    return (smooth_light + (haze * _e15));
+    float4 haze_1 = (exp(_e22) * scales.haze);
+    return (smooth_light_1 + (haze_1 * _e15));
 }
 
 SpectralPath ConstructSpectralPath(float4 arg0, float4 arg1) {
@@ -2334,73 +2378,85 @@ SpectralPath ConstructSpectralPath(float4 arg0, float4 arg1) {
     return ret;
 }
 
-// Air between the eye and a point at a distance along a direction, at four wavelengths. The extinction table holds the mean extinction from the first air on, 1/km.
+// Air between the eye and a point at a distance along a direction, at four wavelengths. The extinction table holds the mean extinction from the first air on, 1/km, as if all of it were below the jump of density nearest to the eye.
 // Cost: 12 exp, 4 reads.
-SpectralPath aerial_perspective(SkyView view_12, SkyScales scales_1, Texture3D<float4> smooth_table_1, Texture3D<float4> haze_table_1, Texture2D<float4> extinction_table, Texture2D<float4> phase_table_2, SamplerState linear_sampler_2, float3 direction_9, float distance_m_1)
+SpectralPath aerial_perspective(SkyView view_13, SkyScales scales_1, Texture3D<float4> smooth_table_1, Texture3D<float4> haze_table_1, Texture2D<float4> extinction_table, Texture2D<float4> phase_table_2, SamplerState linear_sampler_2, float3 direction_9, float distance_m_1)
 {
-    bool local_17 = (bool)0;
+    bool local_19 = (bool)0;
+    float4 smooth_light = (float4)0;
+    float4 haze = (float4)0;
 
     const float _e9 = elevation_of(direction_9);
-    bool is_below_5 = (_e9 < view_12.horizon_rad);
-    const float2 _e13 = air_span_m(view_12, direction_9.y, is_below_5);
-    float length_m_16 = (min(distance_m_1, _e13.y) - _e13.x);
-    if (!((length_m_16 <= 0.0))) {
-        local_17 = (_e9 > view_12.highest_rad);
+    bool is_below_5 = (_e9 < view_13.horizon_rad);
+    const float2 _e13 = air_span_m(view_13, direction_9.y, is_below_5);
+    float length_m_17 = (min(distance_m_1, _e13.y) - _e13.x);
+    if (!((length_m_17 <= 0.0))) {
+        local_19 = (_e9 > view_13.highest_rad);
     } else {
-        local_17 = true;
+        local_19 = true;
     }
-    bool _e26 = local_17;
+    bool _e26 = local_19;
     if (_e26) {
         const SpectralPath spectralpath = ConstructSpectralPath((1.0).xxxx, (0.0).xxxx);
         return spectralpath;
     }
-    const float _e32 = distance_place(view_12, _e13, length_m_16, is_below_5);
-    const float _e35 = row_coordinate(view_12, _e9, is_below_5, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
-    const float _e37 = azimuth_place(direction_9, view_12.sun);
-    const float _e38 = column_place(view_12, _e37);
-    const float _e40 = texel_coordinate(_e38, AERIAL_AZIMUTHS);
-    const float _e42 = texel_coordinate(_e32, AERIAL_DISTANCES);
-    float3 uvw = float3(_e40, _e35, _e42);
-    const float _e45 = one_minus_cos_between(direction_9, view_12.sun);
-    const float4 _e46 = haze_phase(phase_table_2, linear_sampler_2, _e45);
-    float4 _e49 = extinction_table.SampleLevel(linear_sampler_2, uvw.zy, 0.0);
-    float4 depth_5 = (_e49 * (length_m_16 * 0.001));
-    float4 _e54 = smooth_table_1.SampleLevel(linear_sampler_2, uvw, 0.0);
-    float4 smooth_light_1 = (exp(_e54) * scales_1.smooth_light);
-    float4 _e59 = haze_table_1.SampleLevel(linear_sampler_2, uvw, 0.0);
-    float4 haze_1 = (exp(_e59) * scales_1.haze);
-    const float3 _e64 = mean_transmittance_rgb(depth_5.xyz);
-    const float _e66 = mean_transmittance(depth_5.w);
-    float4 opacity_2 = (depth_5 * float4(_e64, _e66));
-    const SpectralPath spectralpath_1 = ConstructSpectralPath(((1.0).xxxx - opacity_2), ((smooth_light_1 + (haze_1 * _e46)) * opacity_2));
+    const float _e33 = share_below_jump(view_13, _e13, direction_9.y, length_m_17, is_below_5);
+    float4 extinction_2 = lerp(view_13.extinction_above, (1.0).xxxx, _e33);
+    const float _e38 = distance_place(view_13, _e13, length_m_17, is_below_5);
+    const float _e41 = row_coordinate(view_13, _e9, is_below_5, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    const float _e43 = azimuth_place(direction_9, view_13.sun);
+    const float _e44 = column_place(view_13, _e43);
+    const float _e46 = texel_coordinate(_e44, AERIAL_AZIMUTHS);
+    const float _e48 = texel_coordinate(_e38, AERIAL_DISTANCES);
+    float3 uvw = float3(_e46, _e41, _e48);
+    const float _e51 = one_minus_cos_between(direction_9, view_13.sun);
+    const float4 _e52 = haze_phase(phase_table_2, linear_sampler_2, _e51);
+    float4 _e55 = extinction_table.SampleLevel(linear_sampler_2, uvw.zy, 0.0);
+    float4 depth_5 = ((_e55 * extinction_2) * (length_m_17 * 0.001));
+    float4 _e61 = smooth_table_1.SampleLevel(linear_sampler_2, uvw, 0.0);
+    smooth_light = (exp(_e61) * scales_1.smooth_light);
+    float4 _e67 = haze_table_1.SampleLevel(linear_sampler_2, uvw, 0.0);
+    haze = (exp(_e67) * scales_1.haze);
+    float4 _e72 = smooth_light;
+    smooth_light = (_e72 * lerp(view_13.smooth_above, (1.0).xxxx, _e33));
+    float4 _e78 = haze;
+    haze = (_e78 * lerp(view_13.haze_above, (1.0).xxxx, _e33));
+    const float3 _e85 = mean_transmittance_rgb(depth_5.xyz);
+    const float _e87 = mean_transmittance(depth_5.w);
+    float4 opacity_2 = (depth_5 * float4(_e85, _e87));
+    float4 _e93 = smooth_light;
+    float4 _e94 = haze;
+    const SpectralPath spectralpath_1 = ConstructSpectralPath(((1.0).xxxx - opacity_2), (((_e93 + (_e94 * _e52)) / extinction_2) * opacity_2));
     return spectralpath_1;
 }
 
 // Transmittance of the air between the eye and a point at a distance along a direction, at four wavelengths: that of `aerial_perspective` alone.
 // Cost: 4 exp, 1 read.
-float4 aerial_transmittance(SkyView view_13, Texture2D<float4> extinction_table_1, SamplerState linear_sampler_3, float3 direction_10, float distance_m_2)
+float4 aerial_transmittance(SkyView view_14, Texture2D<float4> extinction_table_1, SamplerState linear_sampler_3, float3 direction_10, float distance_m_2)
 {
-    bool local_18 = (bool)0;
+    bool local_20 = (bool)0;
 
     const float _e5 = elevation_of(direction_10);
-    bool is_below_6 = (_e5 < view_13.horizon_rad);
-    const float2 _e9 = air_span_m(view_13, direction_10.y, is_below_6);
-    float length_m_17 = (min(distance_m_2, _e9.y) - _e9.x);
-    if (!((length_m_17 <= 0.0))) {
-        local_18 = (_e5 > view_13.highest_rad);
+    bool is_below_6 = (_e5 < view_14.horizon_rad);
+    const float2 _e9 = air_span_m(view_14, direction_10.y, is_below_6);
+    float length_m_18 = (min(distance_m_2, _e9.y) - _e9.x);
+    if (!((length_m_18 <= 0.0))) {
+        local_20 = (_e5 > view_14.highest_rad);
     } else {
-        local_18 = true;
+        local_20 = true;
     }
-    bool _e22 = local_18;
+    bool _e22 = local_20;
     if (_e22) {
         return (1.0).xxxx;
     }
-    const float _e25 = distance_place(view_13, _e9, length_m_17, is_below_6);
-    const float _e28 = row_coordinate(view_13, _e5, is_below_6, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
-    const float _e30 = texel_coordinate(_e25, AERIAL_DISTANCES);
-    float2 uv = float2(_e30, _e28);
-    float4 _e33 = extinction_table_1.SampleLevel(linear_sampler_3, uv, 0.0);
-    return exp((_e33 * (length_m_17 * -0.001)));
+    const float _e26 = share_below_jump(view_14, _e9, direction_10.y, length_m_18, is_below_6);
+    float4 extinction_3 = lerp(view_14.extinction_above, (1.0).xxxx, _e26);
+    const float _e31 = distance_place(view_14, _e9, length_m_18, is_below_6);
+    const float _e34 = row_coordinate(view_14, _e5, is_below_6, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    const float _e36 = texel_coordinate(_e31, AERIAL_DISTANCES);
+    float2 uv = float2(_e36, _e34);
+    float4 _e39 = extinction_table_1.SampleLevel(linear_sampler_3, uv, 0.0);
+    return exp(((_e39 * extinction_3) * (length_m_18 * -0.001)));
 }
 
 // Transmittance and path radiance in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
@@ -2423,10 +2479,10 @@ float fog_row_place(float per_sine, float sine, float elevation_rad_3)
 
 // Texture coordinate of the rows of a direction: falling rays come first.
 // Cost: 2 exp.
-float fog_row_coordinate(FogTableView view_14, float3 direction_11)
+float fog_row_coordinate(FogTableView view_15, float3 direction_11)
 {
     bool is_above = (direction_11.y > 0.0);
-    float per_sine_1 = (is_above ? view_14.above_per_sine : view_14.below_per_sine);
+    float per_sine_1 = (is_above ? view_15.above_per_sine : view_15.below_per_sine);
     const float _e10 = elevation_of(direction_11);
     const float _e12 = fog_row_place(per_sine_1, abs(direction_11.y), abs(_e10));
     return ((((is_above ? FOG_ROWS : 0.0) + 0.5) + (_e12 * 63.0)) / 128.0);
@@ -2434,9 +2490,9 @@ float fog_row_coordinate(FogTableView view_14, float3 direction_11)
 
 // Texture coordinate in stacked tables from that in the table of the layer.
 // Cost: no exp.
-float fog_stacked_coordinate(FogTableView view_15, float coordinate_2)
+float fog_stacked_coordinate(FogTableView view_16, float coordinate_2)
 {
-    return ((view_15.layer + coordinate_2) / view_15.layer_count);
+    return ((view_16.layer + coordinate_2) / view_16.layer_count);
 }
 
 // Opacity of an optical depth: 1 minus the transmittance, without cancellation.
@@ -2449,10 +2505,10 @@ float3 fog_opacity(float3 depth_2)
 
 // Place of a distance, 0 to 1, from the opacity and the transmittance up to there, relative to those of the whole ray to the ground or through the fog.
 // Cost: 6 exp.
-float fog_distance_place(FogTableView view_16, float sin_elevation_10, float3 opacity, float3 transmittance_1)
+float fog_distance_place(FogTableView view_17, float sin_elevation_11, float3 opacity, float3 transmittance_1)
 {
-    float3 vertical = ((sin_elevation_10 > 0.0) ? view_16.depth_above : view_16.depth_below);
-    float3 depth_6 = min((vertical / (max(abs(sin_elevation_10), 1e-10)).xxx), (1e25).xxx);
+    float3 vertical = ((sin_elevation_11 > 0.0) ? view_17.depth_above : view_17.depth_below);
+    float3 depth_6 = min((vertical / (max(abs(sin_elevation_11), 1e-10)).xxx), (1e25).xxx);
     const float3 _e17 = fog_opacity(depth_6);
     float whole = dot(_e17, (1.0).xxx);
     float thin = (whole - dot(opacity, (1.0).xxx));
@@ -2463,10 +2519,10 @@ float fog_distance_place(FogTableView view_16, float sin_elevation_10, float3 op
 
 // Sunlight that is scattered once with a phase function, by its index, in a stream (0, 1 or 2), per unit of opacity, before its scale: from the texture coordinates of distance, row and angle.
 // Cost: 3 exp, 2 reads.
-float3 fog_stream_light(FogTableView view_17, Texture3D<float4> stream_table, Texture2D<float4> stream_phase_table, SamplerState linear_sampler_4, float3 place_6, float phase_1, float stream)
+float3 fog_stream_light(FogTableView view_18, Texture3D<float4> stream_table, Texture2D<float4> stream_phase_table, SamplerState linear_sampler_4, float3 place_6, float phase_1, float stream)
 {
-    float slice = ((((3.0 * phase_1) + stream) + 0.5) / (3.0 * view_17.phase_count));
-    const float _e17 = fog_stacked_coordinate(view_17, slice);
+    float slice = ((((3.0 * phase_1) + stream) + 0.5) / (3.0 * view_18.phase_count));
+    const float _e17 = fog_stacked_coordinate(view_18, slice);
     float3 uvw_1 = float3(place_6.xy, _e17);
     float4 logarithms = stream_table.SampleLevel(linear_sampler_4, uvw_1, 0.0);
     float4 scattered_2 = stream_phase_table.SampleLevel(linear_sampler_4, float2(place_6.z, slice), 0.0);
@@ -2475,23 +2531,23 @@ float3 fog_stream_light(FogTableView view_17, Texture3D<float4> stream_table, Te
 
 // A layer of fog between the eye and a point, by its optical depth on the way: extinction times `exponential_column_m`, or the column of another profile. Rays end at the ground. Of several layers, transmittances multiply and path radiances add up. A step is a phase function of the fog.
 // Cost: 14 exp, 9 exp a step, 1 read, 6 reads a step.
-PathOptics tabulated_fog(FogTableView view_18, Texture3D<float4> diffuse_table, Texture3D<float4> stream_table_1, Texture2D<float4> stream_phase_table_1, SamplerState linear_sampler_5, float3 direction_12, float3 optical_depth_2)
+PathOptics tabulated_fog(FogTableView view_19, Texture3D<float4> diffuse_table, Texture3D<float4> stream_table_1, Texture2D<float4> stream_phase_table_1, SamplerState linear_sampler_5, float3 direction_12, float3 optical_depth_2)
 {
     float3 sunlit_1 = (0.0).xxx;
     float phase_2 = 0.0;
 
     const float3 _e7 = fog_opacity(optical_depth_2);
     float3 transmittance_3 = exp(-(optical_depth_2));
-    const float _e11 = azimuth_place(direction_12, view_18.sun);
+    const float _e11 = azimuth_place(direction_12, view_19.sun);
     const float _e13 = texel_coordinate(_e11, FOG_AZIMUTHS);
-    const float _e14 = fog_row_coordinate(view_18, direction_12);
-    const float _e16 = fog_distance_place(view_18, direction_12.y, _e7, transmittance_3);
+    const float _e14 = fog_row_coordinate(view_19, direction_12);
+    const float _e16 = fog_distance_place(view_19, direction_12.y, _e7, transmittance_3);
     const float _e18 = texel_coordinate(_e16, FOG_DISTANCES);
-    const float _e19 = fog_stacked_coordinate(view_18, _e18);
+    const float _e19 = fog_stacked_coordinate(view_19, _e18);
     float3 uvw_2 = float3(_e13, _e14, _e19);
     float4 _e22 = diffuse_table.SampleLevel(linear_sampler_5, uvw_2, 0.0);
     float3 diffuse = _e22.xyz;
-    const float _e25 = one_minus_cos_between(direction_12, view_18.sun);
+    const float _e25 = one_minus_cos_between(direction_12, view_19.sun);
     const float _e26 = phase_place(_e25);
     const float _e28 = texel_coordinate(_e26, PHASE_ANGLES);
     float3 place_10 = float3(_e18, _e14, _e28);
@@ -2503,23 +2559,23 @@ PathOptics tabulated_fog(FogTableView view_18, Texture3D<float4> diffuse_table, 
         }
         loop_init_12 = false;
         float _e35 = phase_2;
-        if ((_e35 < view_18.phase_count)) {
+        if ((_e35 < view_19.phase_count)) {
         } else {
             break;
         }
         {
             float3 _e38 = sunlit_1;
             float _e39 = phase_2;
-            const float3 _e41 = fog_stream_light(view_18, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e39, 0.0);
+            const float3 _e41 = fog_stream_light(view_19, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e39, 0.0);
             float _e42 = phase_2;
-            const float3 _e44 = fog_stream_light(view_18, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e42, 1.0);
+            const float3 _e44 = fog_stream_light(view_19, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e42, 1.0);
             float _e46 = phase_2;
-            const float3 _e48 = fog_stream_light(view_18, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e46, 2.0);
+            const float3 _e48 = fog_stream_light(view_19, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e46, 2.0);
             sunlit_1 = (_e38 + ((_e41 + _e44) + _e48));
         }
     }
     float3 _e57 = sunlit_1;
-    float3 source_1 = ((view_18.diffuse_scale * diffuse) + (view_18.sunlit_scale * max(_e57, (0.0).xxx)));
+    float3 source_1 = ((view_19.diffuse_scale * diffuse) + (view_19.sunlit_scale * max(_e57, (0.0).xxx)));
     const PathOptics pathoptics_13 = ConstructPathOptics(transmittance_3, (_e7 * source_1));
     return pathoptics_13;
 }
@@ -2593,8 +2649,8 @@ float3 article_transmittance(float3 from_m_8, float3 to_m_7)
 // Cost: no exp.
 float article_distance_m(float3 origin, float3 direction_13, float radius_m_3)
 {
-    float b_4 = dot(origin, direction_13);
-    return (-(b_4) + sqrt(((b_4 * b_4) - (dot(origin, origin) - (radius_m_3 * radius_m_3)))));
+    float b_5 = dot(origin, direction_13);
+    return (-(b_5) + sqrt(((b_5 * b_5) - (dot(origin, origin) - (radius_m_3 * radius_m_3)))));
 }
 
 // Phase function of molecules, 1/sr.
@@ -2636,12 +2692,12 @@ ArticleSky article_sky(float eye_altitude_m, float zenith_illuminance)
 
 // Light that a point scatters along a view ray, per metre.
 // Cost: 6 exp, 3 exp a step; 8 steps.
-float3 article_source(ArticleSky sky, float3 position_7, float3 view_19, float3 sun_1)
+float3 article_source(ArticleSky sky, float3 position_7, float3 view_20, float3 sun_1)
 {
     const float _e5 = article_distance_m(position_7, sun_1, ARTICLE_TOP_RADIUS_M);
     float3 leaves = (position_7 + (sun_1 * _e5));
     const float3 _e8 = article_transmittance(position_7, leaves);
-    float mu_3 = dot(view_19, sun_1);
+    float mu_3 = dot(view_20, sun_1);
     const float3 _e10 = article_sigma_rayleigh(position_7);
     const float _e11 = article_rayleigh_phase(mu_3);
     float3 rayleigh = (_e10 * _e11);
@@ -2653,13 +2709,13 @@ float3 article_source(ArticleSky sky, float3 position_7, float3 view_19, float3 
 
 // Luminance of the sky along a direction above the horizon, without the sun's disc.
 // Cost: 15 exp a step; 8 steps, in each of which two marches of 8 steps take 6 of these, 456 in all.
-float3 article_luminance(ArticleSky sky_1, float3 view_20, float3 sun_2)
+float3 article_luminance(ArticleSky sky_1, float3 view_21, float3 sun_2)
 {
     float3 sum_6 = (0.0).xxx;
     int i_13 = int(0);
 
-    const float _e6 = article_distance_m(sky_1.eye, view_20, ARTICLE_TOP_RADIUS_M);
-    float3 leaves_1 = (sky_1.eye + (view_20 * _e6));
+    const float _e6 = article_distance_m(sky_1.eye, view_21, ARTICLE_TOP_RADIUS_M);
+    float3 leaves_1 = (sky_1.eye + (view_21 * _e6));
     float3 ds_1 = ((leaves_1 - sky_1.eye) / (8.0).xxx);
     float3 direction_15 = (ds_1 / (length(ds_1)).xxx);
     bool loop_init_14 = true;
@@ -2689,12 +2745,12 @@ float3 article_luminance(ArticleSky sky_1, float3 view_20, float3 sun_2)
 
 // Luminance of the sun's disc along a direction above the horizon, whose edge is smooth from 0.95 to 1.05 of its radius. The cosine is clamped to 1, unlike as printed.
 // Cost: 3 exp, 3 exp a step; 8 steps.
-float3 article_disc(ArticleSky sky_2, float3 view_21, float3 sun_3)
+float3 article_disc(ArticleSky sky_2, float3 view_22, float3 sun_3)
 {
-    float angle = acos(min(dot(view_21, sun_3), 1.0));
+    float angle = acos(min(dot(view_22, sun_3), 1.0));
     float disc = (1.0 - smoothstep((0.95 * sky_2.sun_radius_rad), (1.05 * sky_2.sun_radius_rad), angle));
-    const float _e19 = article_distance_m(sky_2.eye, view_21, ARTICLE_TOP_RADIUS_M);
-    float3 leaves_2 = (sky_2.eye + (view_21 * _e19));
+    const float _e19 = article_distance_m(sky_2.eye, view_22, ARTICLE_TOP_RADIUS_M);
+    float3 leaves_2 = (sky_2.eye + (view_22 * _e19));
     const float3 _e25 = article_transmittance(sky_2.eye, leaves_2);
     return ((sky_2.outer_space * disc) * _e25);
 }
@@ -2763,25 +2819,25 @@ float4 sun_disc_radiance(LimbDarkening limb_1, float4 mean_radiance, float sin_r
 // Cost: no exp.
 float moon_reflection(float3 moon, float3 to_sun_1, float sin_radius_3, float3 direction_14)
 {
-    bool local_19 = (bool)0;
-    bool local_20 = (bool)0;
+    bool local_21 = (bool)0;
+    bool local_22 = (bool)0;
 
     float3 apart_1 = (direction_14 - moon);
     float3 aside = ((apart_1 - (moon * dot(apart_1, moon))) / (sin_radius_3).xxx);
     float emission = sqrt(max((1.0 - dot(aside, aside)), 0.0));
     float incidence = (dot(aside, to_sun_1) - (emission * dot(moon, to_sun_1)));
     if (!((emission <= 0.0))) {
-        local_19 = (incidence <= 0.0);
+        local_21 = (incidence <= 0.0);
     } else {
-        local_19 = true;
+        local_21 = true;
     }
-    bool _e28 = local_19;
+    bool _e28 = local_21;
     if (!(_e28)) {
-        local_20 = (dot(direction_14, moon) <= 0.0);
+        local_22 = (dot(direction_14, moon) <= 0.0);
     } else {
-        local_20 = true;
+        local_22 = true;
     }
-    bool _e36 = local_20;
+    bool _e36 = local_22;
     if (_e36) {
         return 0.0;
     }

@@ -133,7 +133,11 @@ struct SkyView {
     float dense_azimuth;
     float dense_width;
     float even_below;
-    char _pad12[8];
+    float jump_height_m;
+    char _pad13[4];
+    metal::float4 extinction_above;
+    metal::float4 smooth_above;
+    metal::float4 haze_above;
 };
 struct SkyScales {
     metal::float4 smooth_light;
@@ -1627,9 +1631,9 @@ metal::float2 lit_interval(
     bool local_13 = {};
     float to_m_4 = INFINITE_M;
     bool local_14 = {};
-    float length_m_15 = ray_14.geometry.length_m;
+    float length_m_16 = ray_14.geometry.length_m;
     if (ray_14.light.kind != LIGHT_SPOT) {
-        return metal::float2(0.0, length_m_15);
+        return metal::float2(0.0, length_m_16);
     }
     float h_3 = ray_14.geometry.nearest_m;
     float across = ray_14.across_m / h_3;
@@ -1670,7 +1674,7 @@ metal::float2 lit_interval(
     }
     float _e94 = from_m_4;
     float _e95 = to_m_4;
-    metal::float2 interval = metal::clamp(metal::float2(_e94, _e95) - metal::float2(ray_14.geometry.start_m), metal::float2(0.0), metal::float2(length_m_15));
+    metal::float2 interval = metal::clamp(metal::float2(_e94, _e95) - metal::float2(ray_14.geometry.start_m), metal::float2(0.0), metal::float2(length_m_16));
     return (interval.y > interval.x) ? interval : metal::float2(0.0);
 }
 
@@ -2373,21 +2377,66 @@ metal::float2 air_span_m(
     return metal::float2(start_4, metal::max(_e50, start_4));
 }
 
+// Part of the way of a ray through the air, up to a length, that is below the jump of density nearest to the eye.
+// Cost: no exp.
+float share_below_jump(
+    SkyView view_9,
+    metal::float2 span_m,
+    float sin_elevation_10,
+    float length_m_14,
+    bool meets_ground_1
+) {
+    bool local_17 = {};
+    bool local_18 = {};
+    float exit = {};
+    float b_4 = (view_9.ground_radius_m + view_9.height_m) * sin_elevation_10;
+    float over_jump = (view_9.height_m - view_9.jump_height_m) * (((2.0 * view_9.ground_radius_m) + view_9.height_m) + view_9.jump_height_m);
+    float squared_root = (b_4 * b_4) - over_jump;
+    if (over_jump > 0.0) {
+        if (!((b_4 >= 0.0))) {
+            local_18 = squared_root <= 0.0;
+        } else {
+            local_18 = true;
+        }
+        bool _e34 = local_18;
+        local_17 = _e34;
+    } else {
+        local_17 = false;
+    }
+    bool _e36 = local_17;
+    if (_e36) {
+        return 0.0;
+    }
+    float root_5 = metal::sqrt(metal::max(squared_root, 0.0));
+    float entry = (over_jump > 0.0) ? (over_jump / (root_5 - b_4)) : 0.0;
+    exit = root_5 - b_4;
+    if (meets_ground_1) {
+        exit = span_m.y;
+    } else {
+        if (b_4 > 0.0) {
+            exit = -(over_jump) / (root_5 + b_4);
+        }
+    }
+    float _e57 = exit;
+    float below_m_1 = metal::min(span_m.x + length_m_14, _e57) - metal::max(span_m.x, entry);
+    return metal::clamp(below_m_1 / metal::max(length_m_14, 0.000001), 0.0, 1.0);
+}
+
 // Length of the first step between the distances of a ray with an interval in the air, relative to even steps. From inside the air distances are dense near the eye, at the square of the place: 0; from above it towards the ground, where most air is, dense there: 2. Steep rays from high in the air are between.
 // Cost: no exp.
 float first_step(
-    SkyView view_9,
-    metal::float2 span_m,
-    bool meets_ground_1
+    SkyView view_10,
+    metal::float2 span_m_1,
+    bool meets_ground_2
 ) {
-    if (view_9.height_m >= view_9.air_height_m) {
-        return meets_ground_1 ? 2.0 : 1.0;
+    if (view_10.height_m >= view_10.air_height_m) {
+        return meets_ground_2 ? 2.0 : 1.0;
     }
-    if (!(meets_ground_1)) {
+    if (!(meets_ground_2)) {
         return 0.0;
     }
-    float slant = 1.0 - metal::min(view_9.height_m / metal::max(span_m.y, 1.0), 1.0);
-    float high = metal::min((2.5 * view_9.height_m) / view_9.air_height_m, 1.0);
+    float slant = 1.0 - metal::min(view_10.height_m / metal::max(span_m_1.y, 1.0), 1.0);
+    float high = metal::min((2.5 * view_10.height_m) / view_10.air_height_m, 1.0);
     return (2.0 * high) * (1.0 - (((slant * slant) * slant) * slant));
 }
 
@@ -2398,8 +2447,8 @@ float place_from_part(
     float first_step_1
 ) {
     float last_step = 2.0 - first_step_1;
-    float root_5 = metal::sqrt((((1.0 - part) * first_step_1) * first_step_1) + ((part * last_step) * last_step));
-    return (2.0 * part) / metal::max(first_step_1 + root_5, 0.00000000000000000001);
+    float root_6 = metal::sqrt((((1.0 - part) * first_step_1) * first_step_1) + ((part * last_step) * last_step));
+    return (2.0 * part) / metal::max(first_step_1 + root_6, 0.00000000000000000001);
 }
 
 // Inverse of `place_from_part`.
@@ -2414,13 +2463,13 @@ float part_from_place(
 // Place from 0 to 1 of a length in the air among the distances of a ray with an interval in the air.
 // Cost: no exp.
 float distance_place(
-    SkyView view_10,
-    metal::float2 span_m_1,
-    float length_m_14,
-    bool meets_ground_2
+    SkyView view_11,
+    metal::float2 span_m_2,
+    float length_m_15,
+    bool meets_ground_3
 ) {
-    float part_6 = metal::clamp(length_m_14 / metal::max(span_m_1.y - span_m_1.x, 0.000001), 0.0, 1.0);
-    float _e13 = first_step(view_10, span_m_1, meets_ground_2);
+    float part_6 = metal::clamp(length_m_15 / metal::max(span_m_2.y - span_m_2.x, 0.000001), 0.0, 1.0);
+    float _e13 = first_step(view_11, span_m_2, meets_ground_3);
     float _e14 = place_from_part(part_6, _e13);
     return _e14;
 }
@@ -2459,7 +2508,7 @@ metal::float4 haze_phase(
 // Radiance of the sky, or of the ground below the horizon, along a direction at four wavelengths, without the sun's disc.
 // Cost: 8 exp, 3 reads.
 metal::float4 sky_radiance(
-    SkyView view_11,
+    SkyView view_12,
     SkyScales scales,
     metal::texture2d<float, metal::access::sample> smooth_table,
     metal::texture2d<float, metal::access::sample> haze_table,
@@ -2468,23 +2517,23 @@ metal::float4 sky_radiance(
     metal::float3 direction_8
 ) {
     float _e7 = elevation_of(direction_8);
-    if (_e7 > view_11.highest_rad) {
+    if (_e7 > view_12.highest_rad) {
         return metal::float4(0.0);
     }
-    metal::float2 _e12 = uv_from_direction(view_11, direction_8);
-    float _e14 = one_minus_cos_between(direction_8, view_11.sun);
+    metal::float2 _e12 = uv_from_direction(view_12, direction_8);
+    float _e14 = one_minus_cos_between(direction_8, view_12.sun);
     metal::float4 _e15 = haze_phase(phase_table_1, linear_sampler_1, _e14);
     metal::float4 _e17 = smooth_table.sample(linear_sampler_1, _e12, metal::level(0.0));
-    metal::float4 smooth_light = metal::exp(_e17) * scales.smooth_light;
+    metal::float4 smooth_light_1 = metal::exp(_e17) * scales.smooth_light;
     metal::float4 _e22 = haze_table.sample(linear_sampler_1, _e12, metal::level(0.0));
-    metal::float4 haze = metal::exp(_e22) * scales.haze;
-    return smooth_light + (haze * _e15);
+    metal::float4 haze_1 = metal::exp(_e22) * scales.haze;
+    return smooth_light_1 + (haze_1 * _e15);
 }
 
-// Air between the eye and a point at a distance along a direction, at four wavelengths. The extinction table holds the mean extinction from the first air on, 1/km.
+// Air between the eye and a point at a distance along a direction, at four wavelengths. The extinction table holds the mean extinction from the first air on, 1/km, as if all of it were below the jump of density nearest to the eye.
 // Cost: 12 exp, 4 reads.
 SpectralPath aerial_perspective(
-    SkyView view_12,
+    SkyView view_13,
     SkyScales scales_1,
     metal::texture3d<float, metal::access::sample> smooth_table_1,
     metal::texture3d<float, metal::access::sample> haze_table_1,
@@ -2494,70 +2543,82 @@ SpectralPath aerial_perspective(
     metal::float3 direction_9,
     float distance_m_1
 ) {
-    bool local_17 = {};
+    bool local_19 = {};
+    metal::float4 smooth_light = {};
+    metal::float4 haze = {};
     float _e9 = elevation_of(direction_9);
-    bool is_below_5 = _e9 < view_12.horizon_rad;
-    metal::float2 _e13 = air_span_m(view_12, direction_9.y, is_below_5);
-    float length_m_16 = metal::min(distance_m_1, _e13.y) - _e13.x;
-    if (!((length_m_16 <= 0.0))) {
-        local_17 = _e9 > view_12.highest_rad;
+    bool is_below_5 = _e9 < view_13.horizon_rad;
+    metal::float2 _e13 = air_span_m(view_13, direction_9.y, is_below_5);
+    float length_m_17 = metal::min(distance_m_1, _e13.y) - _e13.x;
+    if (!((length_m_17 <= 0.0))) {
+        local_19 = _e9 > view_13.highest_rad;
     } else {
-        local_17 = true;
+        local_19 = true;
     }
-    bool _e26 = local_17;
+    bool _e26 = local_19;
     if (_e26) {
         return SpectralPath {metal::float4(1.0), metal::float4(0.0)};
     }
-    float _e32 = distance_place(view_12, _e13, length_m_16, is_below_5);
-    float _e35 = row_coordinate(view_12, _e9, is_below_5, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
-    float _e37 = azimuth_place(direction_9, view_12.sun);
-    float _e38 = column_place(view_12, _e37);
-    float _e40 = texel_coordinate(_e38, AERIAL_AZIMUTHS);
-    float _e42 = texel_coordinate(_e32, AERIAL_DISTANCES);
-    metal::float3 uvw = metal::float3(_e40, _e35, _e42);
-    float _e45 = one_minus_cos_between(direction_9, view_12.sun);
-    metal::float4 _e46 = haze_phase(phase_table_2, linear_sampler_2, _e45);
-    metal::float4 _e49 = extinction_table.sample(linear_sampler_2, uvw.zy, metal::level(0.0));
-    metal::float4 depth_5 = _e49 * (length_m_16 * 0.001);
-    metal::float4 _e54 = smooth_table_1.sample(linear_sampler_2, uvw, metal::level(0.0));
-    metal::float4 smooth_light_1 = metal::exp(_e54) * scales_1.smooth_light;
-    metal::float4 _e59 = haze_table_1.sample(linear_sampler_2, uvw, metal::level(0.0));
-    metal::float4 haze_1 = metal::exp(_e59) * scales_1.haze;
-    metal::float3 _e64 = mean_transmittance_rgb(depth_5.xyz);
-    float _e66 = mean_transmittance(depth_5.w);
-    metal::float4 opacity_2 = depth_5 * metal::float4(_e64, _e66);
-    return SpectralPath {metal::float4(1.0) - opacity_2, (smooth_light_1 + (haze_1 * _e46)) * opacity_2};
+    float _e33 = share_below_jump(view_13, _e13, direction_9.y, length_m_17, is_below_5);
+    metal::float4 extinction_2 = metal::mix(view_13.extinction_above, metal::float4(1.0), _e33);
+    float _e38 = distance_place(view_13, _e13, length_m_17, is_below_5);
+    float _e41 = row_coordinate(view_13, _e9, is_below_5, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    float _e43 = azimuth_place(direction_9, view_13.sun);
+    float _e44 = column_place(view_13, _e43);
+    float _e46 = texel_coordinate(_e44, AERIAL_AZIMUTHS);
+    float _e48 = texel_coordinate(_e38, AERIAL_DISTANCES);
+    metal::float3 uvw = metal::float3(_e46, _e41, _e48);
+    float _e51 = one_minus_cos_between(direction_9, view_13.sun);
+    metal::float4 _e52 = haze_phase(phase_table_2, linear_sampler_2, _e51);
+    metal::float4 _e55 = extinction_table.sample(linear_sampler_2, uvw.zy, metal::level(0.0));
+    metal::float4 depth_5 = (_e55 * extinction_2) * (length_m_17 * 0.001);
+    metal::float4 _e61 = smooth_table_1.sample(linear_sampler_2, uvw, metal::level(0.0));
+    smooth_light = metal::exp(_e61) * scales_1.smooth_light;
+    metal::float4 _e67 = haze_table_1.sample(linear_sampler_2, uvw, metal::level(0.0));
+    haze = metal::exp(_e67) * scales_1.haze;
+    metal::float4 _e72 = smooth_light;
+    smooth_light = _e72 * metal::mix(view_13.smooth_above, metal::float4(1.0), _e33);
+    metal::float4 _e78 = haze;
+    haze = _e78 * metal::mix(view_13.haze_above, metal::float4(1.0), _e33);
+    metal::float3 _e85 = mean_transmittance_rgb(depth_5.xyz);
+    float _e87 = mean_transmittance(depth_5.w);
+    metal::float4 opacity_2 = depth_5 * metal::float4(_e85, _e87);
+    metal::float4 _e93 = smooth_light;
+    metal::float4 _e94 = haze;
+    return SpectralPath {metal::float4(1.0) - opacity_2, ((_e93 + (_e94 * _e52)) / extinction_2) * opacity_2};
 }
 
 // Transmittance of the air between the eye and a point at a distance along a direction, at four wavelengths: that of `aerial_perspective` alone.
 // Cost: 4 exp, 1 read.
 metal::float4 aerial_transmittance(
-    SkyView view_13,
+    SkyView view_14,
     metal::texture2d<float, metal::access::sample> extinction_table_1,
     metal::sampler linear_sampler_3,
     metal::float3 direction_10,
     float distance_m_2
 ) {
-    bool local_18 = {};
+    bool local_20 = {};
     float _e5 = elevation_of(direction_10);
-    bool is_below_6 = _e5 < view_13.horizon_rad;
-    metal::float2 _e9 = air_span_m(view_13, direction_10.y, is_below_6);
-    float length_m_17 = metal::min(distance_m_2, _e9.y) - _e9.x;
-    if (!((length_m_17 <= 0.0))) {
-        local_18 = _e5 > view_13.highest_rad;
+    bool is_below_6 = _e5 < view_14.horizon_rad;
+    metal::float2 _e9 = air_span_m(view_14, direction_10.y, is_below_6);
+    float length_m_18 = metal::min(distance_m_2, _e9.y) - _e9.x;
+    if (!((length_m_18 <= 0.0))) {
+        local_20 = _e5 > view_14.highest_rad;
     } else {
-        local_18 = true;
+        local_20 = true;
     }
-    bool _e22 = local_18;
+    bool _e22 = local_20;
     if (_e22) {
         return metal::float4(1.0);
     }
-    float _e25 = distance_place(view_13, _e9, length_m_17, is_below_6);
-    float _e28 = row_coordinate(view_13, _e5, is_below_6, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
-    float _e30 = texel_coordinate(_e25, AERIAL_DISTANCES);
-    metal::float2 uv = metal::float2(_e30, _e28);
-    metal::float4 _e33 = extinction_table_1.sample(linear_sampler_3, uv, metal::level(0.0));
-    return metal::exp(_e33 * (length_m_17 * -0.001));
+    float _e26 = share_below_jump(view_14, _e9, direction_10.y, length_m_18, is_below_6);
+    metal::float4 extinction_3 = metal::mix(view_14.extinction_above, metal::float4(1.0), _e26);
+    float _e31 = distance_place(view_14, _e9, length_m_18, is_below_6);
+    float _e34 = row_coordinate(view_14, _e5, is_below_6, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    float _e36 = texel_coordinate(_e31, AERIAL_DISTANCES);
+    metal::float2 uv = metal::float2(_e36, _e34);
+    metal::float4 _e39 = extinction_table_1.sample(linear_sampler_3, uv, metal::level(0.0));
+    return metal::exp((_e39 * extinction_3) * (length_m_18 * -0.001));
 }
 
 // Transmittance and path radiance in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
@@ -2586,11 +2647,11 @@ float fog_row_place(
 // Texture coordinate of the rows of a direction: falling rays come first.
 // Cost: 2 exp.
 float fog_row_coordinate(
-    FogTableView view_14,
+    FogTableView view_15,
     metal::float3 direction_11
 ) {
     bool is_above = direction_11.y > 0.0;
-    float per_sine_1 = is_above ? view_14.above_per_sine : view_14.below_per_sine;
+    float per_sine_1 = is_above ? view_15.above_per_sine : view_15.below_per_sine;
     float _e10 = elevation_of(direction_11);
     float _e12 = fog_row_place(per_sine_1, metal::abs(direction_11.y), metal::abs(_e10));
     return (((is_above ? FOG_ROWS : 0.0) + 0.5) + (_e12 * 63.0)) / 128.0;
@@ -2599,10 +2660,10 @@ float fog_row_coordinate(
 // Texture coordinate in stacked tables from that in the table of the layer.
 // Cost: no exp.
 float fog_stacked_coordinate(
-    FogTableView view_15,
+    FogTableView view_16,
     float coordinate_2
 ) {
-    return (view_15.layer + coordinate_2) / view_15.layer_count;
+    return (view_16.layer + coordinate_2) / view_16.layer_count;
 }
 
 // Opacity of an optical depth: 1 minus the transmittance, without cancellation.
@@ -2617,13 +2678,13 @@ metal::float3 fog_opacity(
 // Place of a distance, 0 to 1, from the opacity and the transmittance up to there, relative to those of the whole ray to the ground or through the fog.
 // Cost: 6 exp.
 float fog_distance_place(
-    FogTableView view_16,
-    float sin_elevation_10,
+    FogTableView view_17,
+    float sin_elevation_11,
     metal::float3 opacity,
     metal::float3 transmittance_1
 ) {
-    metal::float3 vertical = (sin_elevation_10 > 0.0) ? view_16.depth_above : view_16.depth_below;
-    metal::float3 depth_6 = metal::min(vertical / metal::float3(metal::max(metal::abs(sin_elevation_10), 0.0000000001)), metal::float3(10000000000000000000000000.0));
+    metal::float3 vertical = (sin_elevation_11 > 0.0) ? view_17.depth_above : view_17.depth_below;
+    metal::float3 depth_6 = metal::min(vertical / metal::float3(metal::max(metal::abs(sin_elevation_11), 0.0000000001)), metal::float3(10000000000000000000000000.0));
     metal::float3 _e17 = fog_opacity(depth_6);
     float whole = metal::dot(_e17, metal::float3(1.0));
     float thin = whole - metal::dot(opacity, metal::float3(1.0));
@@ -2635,7 +2696,7 @@ float fog_distance_place(
 // Sunlight that is scattered once with a phase function, by its index, in a stream (0, 1 or 2), per unit of opacity, before its scale: from the texture coordinates of distance, row and angle.
 // Cost: 3 exp, 2 reads.
 metal::float3 fog_stream_light(
-    FogTableView view_17,
+    FogTableView view_18,
     metal::texture3d<float, metal::access::sample> stream_table,
     metal::texture2d<float, metal::access::sample> stream_phase_table,
     metal::sampler linear_sampler_4,
@@ -2643,8 +2704,8 @@ metal::float3 fog_stream_light(
     float phase_1,
     float stream
 ) {
-    float slice = (((3.0 * phase_1) + stream) + 0.5) / (3.0 * view_17.phase_count);
-    float _e17 = fog_stacked_coordinate(view_17, slice);
+    float slice = (((3.0 * phase_1) + stream) + 0.5) / (3.0 * view_18.phase_count);
+    float _e17 = fog_stacked_coordinate(view_18, slice);
     metal::float3 uvw_1 = metal::float3(place_6.xy, _e17);
     metal::float4 logarithms = stream_table.sample(linear_sampler_4, uvw_1, metal::level(0.0));
     metal::float4 scattered_2 = stream_phase_table.sample(linear_sampler_4, metal::float2(place_6.z, slice), metal::level(0.0));
@@ -2654,7 +2715,7 @@ metal::float3 fog_stream_light(
 // A layer of fog between the eye and a point, by its optical depth on the way: extinction times `exponential_column_m`, or the column of another profile. Rays end at the ground. Of several layers, transmittances multiply and path radiances add up. A step is a phase function of the fog.
 // Cost: 14 exp, 9 exp a step, 1 read, 6 reads a step.
 PathOptics tabulated_fog(
-    FogTableView view_18,
+    FogTableView view_19,
     metal::texture3d<float, metal::access::sample> diffuse_table,
     metal::texture3d<float, metal::access::sample> stream_table_1,
     metal::texture2d<float, metal::access::sample> stream_phase_table_1,
@@ -2666,16 +2727,16 @@ PathOptics tabulated_fog(
     float phase_2 = 0.0;
     metal::float3 _e7 = fog_opacity(optical_depth_2);
     metal::float3 transmittance_3 = metal::exp(-(optical_depth_2));
-    float _e11 = azimuth_place(direction_12, view_18.sun);
+    float _e11 = azimuth_place(direction_12, view_19.sun);
     float _e13 = texel_coordinate(_e11, FOG_AZIMUTHS);
-    float _e14 = fog_row_coordinate(view_18, direction_12);
-    float _e16 = fog_distance_place(view_18, direction_12.y, _e7, transmittance_3);
+    float _e14 = fog_row_coordinate(view_19, direction_12);
+    float _e16 = fog_distance_place(view_19, direction_12.y, _e7, transmittance_3);
     float _e18 = texel_coordinate(_e16, FOG_DISTANCES);
-    float _e19 = fog_stacked_coordinate(view_18, _e18);
+    float _e19 = fog_stacked_coordinate(view_19, _e18);
     metal::float3 uvw_2 = metal::float3(_e13, _e14, _e19);
     metal::float4 _e22 = diffuse_table.sample(linear_sampler_5, uvw_2, metal::level(0.0));
     metal::float3 diffuse = _e22.xyz;
-    float _e25 = one_minus_cos_between(direction_12, view_18.sun);
+    float _e25 = one_minus_cos_between(direction_12, view_19.sun);
     float _e26 = phase_place(_e25);
     float _e28 = texel_coordinate(_e26, PHASE_ANGLES);
     metal::float3 place_10 = metal::float3(_e18, _e14, _e28);
@@ -2687,23 +2748,23 @@ PathOptics tabulated_fog(
         }
         loop_init_12 = false;
         float _e35 = phase_2;
-        if (_e35 < view_18.phase_count) {
+        if (_e35 < view_19.phase_count) {
         } else {
             break;
         }
         {
             metal::float3 _e38 = sunlit_1;
             float _e39 = phase_2;
-            metal::float3 _e41 = fog_stream_light(view_18, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e39, 0.0);
+            metal::float3 _e41 = fog_stream_light(view_19, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e39, 0.0);
             float _e42 = phase_2;
-            metal::float3 _e44 = fog_stream_light(view_18, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e42, 1.0);
+            metal::float3 _e44 = fog_stream_light(view_19, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e42, 1.0);
             float _e46 = phase_2;
-            metal::float3 _e48 = fog_stream_light(view_18, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e46, 2.0);
+            metal::float3 _e48 = fog_stream_light(view_19, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e46, 2.0);
             sunlit_1 = _e38 + ((_e41 + _e44) + _e48);
         }
     }
     metal::float3 _e57 = sunlit_1;
-    metal::float3 source_1 = (view_18.diffuse_scale * diffuse) + (view_18.sunlit_scale * metal::max(_e57, metal::float3(0.0)));
+    metal::float3 source_1 = (view_19.diffuse_scale * diffuse) + (view_19.sunlit_scale * metal::max(_e57, metal::float3(0.0)));
     return PathOptics {transmittance_3, _e7 * source_1};
 }
 
@@ -2784,8 +2845,8 @@ float article_distance_m(
     metal::float3 direction_13,
     float radius_m_3
 ) {
-    float b_4 = metal::dot(origin, direction_13);
-    return -(b_4) + metal::sqrt((b_4 * b_4) - (metal::dot(origin, origin) - (radius_m_3 * radius_m_3)));
+    float b_5 = metal::dot(origin, direction_13);
+    return -(b_5) + metal::sqrt((b_5 * b_5) - (metal::dot(origin, origin) - (radius_m_3 * radius_m_3)));
 }
 
 // Phase function of molecules, 1/sr.
@@ -2824,13 +2885,13 @@ ArticleSky article_sky(
 metal::float3 article_source(
     ArticleSky sky,
     metal::float3 position_7,
-    metal::float3 view_19,
+    metal::float3 view_20,
     metal::float3 sun_1
 ) {
     float _e5 = article_distance_m(position_7, sun_1, ARTICLE_TOP_RADIUS_M);
     metal::float3 leaves = position_7 + (sun_1 * _e5);
     metal::float3 _e8 = article_transmittance(position_7, leaves);
-    float mu_3 = metal::dot(view_19, sun_1);
+    float mu_3 = metal::dot(view_20, sun_1);
     metal::float3 _e10 = article_sigma_rayleigh(position_7);
     float _e11 = article_rayleigh_phase(mu_3);
     metal::float3 rayleigh = _e10 * _e11;
@@ -2844,13 +2905,13 @@ metal::float3 article_source(
 // Cost: 15 exp a step; 8 steps, in each of which two marches of 8 steps take 6 of these, 456 in all.
 metal::float3 article_luminance(
     ArticleSky sky_1,
-    metal::float3 view_20,
+    metal::float3 view_21,
     metal::float3 sun_2
 ) {
     metal::float3 sum_6 = metal::float3(0.0);
     int i_13 = 0;
-    float _e6 = article_distance_m(sky_1.eye, view_20, ARTICLE_TOP_RADIUS_M);
-    metal::float3 leaves_1 = sky_1.eye + (view_20 * _e6);
+    float _e6 = article_distance_m(sky_1.eye, view_21, ARTICLE_TOP_RADIUS_M);
+    metal::float3 leaves_1 = sky_1.eye + (view_21 * _e6);
     metal::float3 ds_1 = (leaves_1 - sky_1.eye) / metal::float3(8.0);
     metal::float3 direction_15 = ds_1 / metal::float3(metal::length(ds_1));
     bool loop_init_14 = true;
@@ -2882,13 +2943,13 @@ metal::float3 article_luminance(
 // Cost: 3 exp, 3 exp a step; 8 steps.
 metal::float3 article_disc(
     ArticleSky sky_2,
-    metal::float3 view_21,
+    metal::float3 view_22,
     metal::float3 sun_3
 ) {
-    float angle = metal::acos(metal::min(metal::dot(view_21, sun_3), 1.0));
+    float angle = metal::acos(metal::min(metal::dot(view_22, sun_3), 1.0));
     float disc = 1.0 - metal::smoothstep(0.95 * sky_2.sun_radius_rad, 1.05 * sky_2.sun_radius_rad, angle);
-    float _e19 = article_distance_m(sky_2.eye, view_21, ARTICLE_TOP_RADIUS_M);
-    metal::float3 leaves_2 = sky_2.eye + (view_21 * _e19);
+    float _e19 = article_distance_m(sky_2.eye, view_22, ARTICLE_TOP_RADIUS_M);
+    metal::float3 leaves_2 = sky_2.eye + (view_22 * _e19);
     metal::float3 _e25 = article_transmittance(sky_2.eye, leaves_2);
     return (sky_2.outer_space * disc) * _e25;
 }
@@ -2962,24 +3023,24 @@ float moon_reflection(
     float sin_radius_3,
     metal::float3 direction_14
 ) {
-    bool local_19 = {};
-    bool local_20 = {};
+    bool local_21 = {};
+    bool local_22 = {};
     metal::float3 apart_1 = direction_14 - moon;
     metal::float3 aside = (apart_1 - (moon * metal::dot(apart_1, moon))) / metal::float3(sin_radius_3);
     float emission = metal::sqrt(metal::max(1.0 - metal::dot(aside, aside), 0.0));
     float incidence = metal::dot(aside, to_sun_1) - (emission * metal::dot(moon, to_sun_1));
     if (!((emission <= 0.0))) {
-        local_19 = incidence <= 0.0;
+        local_21 = incidence <= 0.0;
     } else {
-        local_19 = true;
+        local_21 = true;
     }
-    bool _e28 = local_19;
+    bool _e28 = local_21;
     if (!(_e28)) {
-        local_20 = metal::dot(direction_14, moon) <= 0.0;
+        local_22 = metal::dot(direction_14, moon) <= 0.0;
     } else {
-        local_20 = true;
+        local_22 = true;
     }
-    bool _e36 = local_20;
+    bool _e36 = local_22;
     if (_e36) {
         return 0.0;
     }

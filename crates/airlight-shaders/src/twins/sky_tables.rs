@@ -40,7 +40,8 @@ pub struct SkyView {
     pub horizon_rad: f32,
     /// Elevation above which a ray meets no air, rad.
     pub highest_rad: f32,
-    /// Elevation of the rays that graze the highest jump of density below the eye, rad; that of the horizon without one.
+    /// Elevation of the rays that graze the highest jump of density below the eye, rad, or 0 just below a jump; that of the horizon without
+    /// one.
     pub kink_rad: f32,
     /// Place of the row at that elevation, 0 to 1.
     pub kink_place: f32,
@@ -52,6 +53,14 @@ pub struct SkyView {
     pub dense_width: f32,
     /// Share of the rows below the horizon that are as dense at the nadir as from far away: the sine of the angle by which the horizon dips.
     pub even_below: f32,
+    /// Height above the ground of the jump of density that is nearest to the eye, m.
+    pub jump_height_m: f32,
+    /// Extinction just above that jump relative to that just below it; 1 without a jump.
+    pub extinction_above: Vec4,
+    /// Smooth light that a metre of air scatters just above that jump relative to one just below it; 1 without a jump.
+    pub smooth_above: Vec4,
+    /// Light that a metre of haze scatters once just above that jump relative to one just below it; 1 without a jump.
+    pub haze_above: Vec4,
 }
 
 /// Factors from the normalised values in tables to radiance, at four wavelengths.
@@ -246,6 +255,36 @@ pub fn air_span_m(view: SkyView, sin_elevation: f32, meets_ground: bool) -> Vec2
     Vec2::new(start, end.max(start))
 }
 
+/// Part of the way of a ray through the air, up to a length, that is below the jump of density nearest to the eye.
+pub fn share_below_jump(
+    view: SkyView,
+    span_m: Vec2,
+    sin_elevation: f32,
+    length_m: f32,
+    meets_ground: bool,
+) -> f32 {
+    let b = (view.ground_radius_m + view.height_m) * sin_elevation;
+    let over_jump = (view.height_m - view.jump_height_m)
+        * (2.0 * view.ground_radius_m + view.height_m + view.jump_height_m);
+    let squared_root = b * b - over_jump;
+    if over_jump > 0.0 && (b >= 0.0 || squared_root <= 0.0) {
+        return 0.0;
+    }
+    let root = squared_root.max(0.0).sqrt();
+    let entry = match over_jump > 0.0 {
+        true => over_jump / (root - b),
+        false => 0.0,
+    };
+    let mut exit = root - b;
+    if meets_ground {
+        exit = span_m.y;
+    } else if b > 0.0 {
+        exit = -over_jump / (root + b);
+    }
+    let below_m = (span_m.x + length_m).min(exit) - span_m.x.max(entry);
+    (below_m / length_m.max(1e-6)).clamp(0.0, 1.0)
+}
+
 /// Length of the first step between the distances of a ray with an interval in the air, relative to even steps: 0 where they are dense near
 /// the eye, 2 where they are dense at the end.
 pub fn first_step(view: SkyView, span_m: Vec2, meets_ground: bool) -> f32 {
@@ -350,6 +389,8 @@ pub fn aerial_perspective(
             path_radiance: Vec4::ZERO,
         };
     }
+    let share = share_below_jump(view, span, direction.y, length_m, is_below);
+    let extinction = view.extinction_above.lerp(Vec4::ONE, share);
     let place = distance_place(view, span, length_m, is_below);
     let row = row_coordinate(
         view,
@@ -366,13 +407,15 @@ pub fn aerial_perspective(
     );
     let one_minus_cos = one_minus_cos_between(direction, view.sun);
     let phase = haze_phase(phase_table, linear_sampler, one_minus_cos);
-    let depth = extinction_table.sample(linear_sampler, uvw.zy()) * (length_m * 1e-3);
-    let smooth_light = smooth_table.sample_3d(linear_sampler, uvw).exp() * scales.smooth_light;
-    let haze = haze_table.sample_3d(linear_sampler, uvw).exp() * scales.haze;
+    let depth = extinction_table.sample(linear_sampler, uvw.zy()) * extinction * (length_m * 1e-3);
+    let mut smooth_light = smooth_table.sample_3d(linear_sampler, uvw).exp() * scales.smooth_light;
+    let mut haze = haze_table.sample_3d(linear_sampler, uvw).exp() * scales.haze;
+    smooth_light *= view.smooth_above.lerp(Vec4::ONE, share);
+    haze *= view.haze_above.lerp(Vec4::ONE, share);
     let opacity = depth * mean_transmittance_rgb(depth.xyz()).extend(mean_transmittance(depth.w));
     SpectralPath {
         transmittance: 1.0 - opacity,
-        path_radiance: (smooth_light + haze * phase) * opacity,
+        path_radiance: (smooth_light + haze * phase) / extinction * opacity,
     }
 }
 
@@ -392,6 +435,8 @@ pub fn aerial_transmittance(
     if length_m <= 0.0 || elevation_rad > view.highest_rad {
         return Vec4::ONE;
     }
+    let share = share_below_jump(view, span, direction.y, length_m, is_below);
+    let extinction = view.extinction_above.lerp(Vec4::ONE, share);
     let place = distance_place(view, span, length_m, is_below);
     let row = row_coordinate(
         view,
@@ -401,7 +446,7 @@ pub fn aerial_transmittance(
         AERIAL_ROWS_BELOW,
     );
     let uv = Vec2::new(texel_coordinate(place, AERIAL_DISTANCES), row);
-    (extinction_table.sample(linear_sampler, uv) * (length_m * -1e-3)).exp()
+    (extinction_table.sample(linear_sampler, uv) * extinction * (length_m * -1e-3)).exp()
 }
 
 /// Transmittance and path radiance in red, green and blue, for scenes in these.

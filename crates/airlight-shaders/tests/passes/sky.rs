@@ -47,9 +47,10 @@ fn uniform(tables: &SkyTables) -> Vec<u8> {
         view.dense_share,
         view.dense_azimuth,
     ]);
-    numbers.extend([view.dense_width, view.even_below, 0.0, 0.0]);
+    numbers.extend([view.dense_width, view.even_below, view.jump_height_m, 0.0]);
     let rows = |weights: RgbWeights| [weights.red, weights.green, weights.blue];
-    let mut vectors = vec![tables.scales.smooth_light, tables.scales.haze];
+    let mut vectors = vec![view.extinction_above, view.smooth_above, view.haze_above];
+    vectors.extend([tables.scales.smooth_light, tables.scales.haze]);
     vectors.extend(rows(tables.radiance_weights));
     vectors.extend(rows(tables.transmittance_weights));
     numbers.extend(vectors.iter().flat_map(|vector| vector.to_array()));

@@ -2,7 +2,8 @@
 //!
 //! Rows divide the elevations from the horizon to the highest air, and those from the horizon to the nadir. Light jumps at the horizon and
 //! bends sharply along rays that graze a jump of density below the eye, such as the top of a dust layer: just below it the path in the
-//! layer grows with the square root of the angle. Rows at the square of a uniform coordinate on that side resolve the root.
+//! layer grows with the square root of the angle. Rows at the square of a uniform coordinate on that side resolve the root. Just below such a
+//! jump, the level ray takes the place of the grazing one: rays above it soon leave the layer, those below it have a long way in it.
 //!
 //! Columns divide the azimuths from that of the sun to the opposite one. From space, the planet's shadow crosses the limb where the
 //! sun has set for the air there: columns are dense about that azimuth.
@@ -21,7 +22,8 @@ pub struct TableCoordinates {
     pub horizon_rad: f64,
     /// Elevation above which there is no air, rad: the zenith, or from space the limb.
     pub highest_rad: f64,
-    /// Elevation of the rays that graze the highest jump of density below the eye, rad; that of the horizon without one.
+    /// Elevation of the rays that graze the highest jump of density below the eye, rad, or 0 for an eye just below a jump; that of the
+    /// horizon without one.
     pub kink_rad: f64,
     /// Place of the row at that elevation, a multiple of 1 / [`TableCoordinates::ROW_STEPS`].
     pub kink_place: f64,
@@ -34,6 +36,8 @@ pub struct TableCoordinates {
     /// Share of rows below the horizon that are as dense at the nadir as rays to the ground are from far away; the others are denser near
     /// the horizon, as rays from a low eye soon meet the ground elsewhere.
     pub even_below: f64,
+    /// Height above the ground of the jump of density that is nearest to the eye, m.
+    pub jump_height_m: Option<f64>,
 }
 
 impl View {
@@ -51,15 +55,23 @@ impl TableCoordinates {
 
     fn new(view: &View) -> Self {
         let radius_m = view.radius_m();
-        let (_, top_radius_m) = view.bounds_m();
+        let (ground_radius_m, top_radius_m) = view.bounds_m();
         let horizon_rad = view.horizon_elevation_rad();
         let highest_rad = match radius_m >= top_radius_m {
             true => -(top_radius_m / radius_m).acos(),
             false => FRAC_PI_2,
         };
         let jumps_m = &view.sky().shell().shadow_radii_m[1..];
+        let nearest_m = jumps_m
+            .iter()
+            .copied()
+            .min_by(|a, b| (a - radius_m).abs().total_cmp(&(b - radius_m).abs()));
         let below_eye = jumps_m.iter().rev().find(|&&jump_m| jump_m < radius_m);
-        let grazing = below_eye.map_or(horizon_rad, |jump_m| -(jump_m / radius_m).acos());
+        let grazing = match (nearest_m, below_eye) {
+            (Some(jump_m), _) if is_just_below(radius_m, jump_m, ground_radius_m) => 0.0,
+            (_, Some(jump_m)) => -(jump_m / radius_m).acos(),
+            (_, None) => horizon_rad,
+        };
         let (kink_rad, kink_place) = kink(grazing, (horizon_rad, highest_rad));
         let (dense_azimuth, dense_width) =
             terminator(axes::elevation_deg(view.sun()).to_radians(), -horizon_rad);
@@ -72,6 +84,7 @@ impl TableCoordinates {
             dense_azimuth,
             dense_width,
             even_below: -horizon_rad.sin(),
+            jump_height_m: nearest_m.map(|jump_m| jump_m - ground_radius_m),
         }
     }
 
@@ -162,6 +175,13 @@ impl TableCoordinates {
     }
 }
 
+/// True for an eye so close below a jump that rays near the horizontal leave the layer within a small part of the angle down to the horizon.
+fn is_just_below(radius_m: f64, jump_radius_m: f64, ground_radius_m: f64) -> bool {
+    const PART_OF_HEIGHT: f64 = 0.25;
+    let depth_m = jump_radius_m - radius_m;
+    (0.0..PART_OF_HEIGHT * (radius_m - ground_radius_m)).contains(&depth_m)
+}
+
 /// Elevation of a kink and its place, for rays that graze a jump at an elevation between others; the lower of them and 0 for one that is
 /// not above it.
 fn kink(grazing_rad: f64, (horizon_rad, highest_rad): (f64, f64)) -> (f64, f64) {
@@ -229,6 +249,7 @@ mod tests {
             dense_azimuth,
             dense_width,
             even_below: -horizon_rad.sin(),
+            jump_height_m: None,
         }
     }
 

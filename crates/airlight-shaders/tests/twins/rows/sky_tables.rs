@@ -12,7 +12,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 flat_struct! {
     twins::sky_tables::SkyView { sun, height_m, ground_radius_m, air_height_m, horizon_rad, highest_rad, kink_rad, kink_place,
-        dense_share, dense_azimuth, dense_width, even_below }
+        dense_share, dense_azimuth, dense_width, even_below, jump_height_m, extinction_above, smooth_above, haze_above }
     twins::sky_tables::SkyScales { smooth_light, haze }
     twins::sky_tables::SpectralPath { transmittance, path_radiance }
 }
@@ -58,12 +58,14 @@ fn view(r: &mut Random) -> Vec<f32> {
         r.or(&[0.0, 1.0], Random::unit),
         r.or(&[0.05, 10.0], |r| r.decades(0.05, 10.0)),
         -horizon.sin() as f32,
+        r.or(&[100.0, 6e3, height_m], |r| r.decades(10.0, 9e4)),
     ]);
+    all.extend((0..12).map(|_| r.or(&[1.0, 1e-3], |r| r.decades(1e-3, 10.0))));
     all
 }
 
 /// Number of numbers of a view.
-const VIEW: usize = 14;
+const VIEW: usize = 27;
 
 /// A view and a direction, which is not at the horizon or the limb, where radiance jumps.
 fn view_and_direction(r: &mut Random) -> Vec<f32> {
@@ -193,6 +195,28 @@ fn span(view: &[f64], sine: f64, meets_ground: bool) -> [f64; 2] {
     [start, end.max(start)]
 }
 
+/// Part of a way in the air inside the sphere of the jump.
+fn share(view: &[f64], span: [f64; 2], sine: f64, length: f64, meets_ground: bool) -> f64 {
+    let (radius, jump) = (view[4] + view[3], view[4] + view[14]);
+    let c = radius * radius - jump * jump;
+    let discriminant = radius * radius * sine * sine - c;
+    if discriminant < 0.0 {
+        return 0.0;
+    }
+    let entry = -radius * sine - discriminant.sqrt();
+    let exit = match meets_ground {
+        true => span[1],
+        false => -radius * sine + discriminant.sqrt(),
+    };
+    let inside = (span[0] + length).min(exit) - span[0].max(entry);
+    (inside / length.max(1e-6)).clamp(0.0, 1.0)
+}
+
+/// What is relative to `above` for a ray with a share below a jump.
+fn relative(above: &[f64], share: f64) -> [f64; 4] {
+    std::array::from_fn(|k| above[k] + (1.0 - above[k]) * share)
+}
+
 /// A view, the interval in the air of a ray that meets air, and whether it meets the ground.
 fn ray(r: &mut Random) -> Vec<f32> {
     let mut all = view_and_direction(r);
@@ -307,9 +331,16 @@ fn aerial(x: &[f64]) -> Vec<f64> {
     let v = row(view, elevation, below, AERIAL_ROWS);
     let u = texel(column(view, azimuth(direction, view)), 32.0);
     let phase = haze_phase(one_minus_cos(direction, view));
-    let depth = sample("extinction_table_2d", [w, v, 0.5]).map(|e| e * length * 1e-3);
-    let source = light(3, [u, v, w], scales, phase);
-    let path = (0..4).map(|k| -(-depth[k]).exp_m1() * source[k]);
+    let share = share(view, [start, end], direction[1], length, below);
+    let extinction = relative(&view[15..19], share);
+    let [smooth, haze] = [19, 23].map(|first| relative(&view[first..][..4], share));
+    let depth = sample("extinction_table_2d", [w, v, 0.5]);
+    let depth: [f64; 4] = std::array::from_fn(|k| depth[k] * extinction[k] * length * 1e-3);
+    let scales: Vec<f64> = (0..8)
+        .map(|k| scales[k] * if k < 4 { smooth[k] } else { haze[k - 4] })
+        .collect();
+    let source = light(3, [u, v, w], &scales, phase);
+    let path = (0..4).map(|k| -(-depth[k]).exp_m1() * source[k] / extinction[k]);
     depth.map(|d| (-d).exp()).into_iter().chain(path).collect()
 }
 
@@ -418,6 +449,21 @@ pub fn sky_tables() -> Vec<Row> {
             all.extend([elevation.sin(), f32::from(below)]);
             all
         } => |x| span(x, x[VIEW], x[VIEW + 1] != 0.0).to_vec();
+        share_below_jump: |r| {
+            let mut all = view_and_direction(r);
+            let elevation = all[VIEW + 1].clamp(-1.0, 1.0).asin().min(all[7] - 1e-3);
+            let below = elevation < all[6];
+            all.truncate(VIEW);
+            let exact: Vec<f64> = all.iter().copied().map(f64::from).collect();
+            let span_m = span(&exact, f64::from(elevation).sin(), below);
+            let length_m = (span_m[1] - span_m[0]) * f64::from(r.or(&[0.0, 1.0], Random::unit));
+            all.extend(span_m.map(|m| m as f32));
+            all.extend([elevation.sin(), length_m as f32, f32::from(below)]);
+            all
+        } => |x| {
+            let of = &x[VIEW..];
+            vec![share(x, [of[0], of[1]], of[2], of[3], of[4] != 0.0)]
+        };
         first_step: |r| ray(r) => |x| vec![step_at_eye(x, [x[VIEW], x[VIEW + 1]], x[VIEW + 2] != 0.0)];
         place_from_part: |r| vec![r.or(&[0.0, 1.0], Random::unit), r.or(&[0.0, 1.0, 2.0], |r| r.between(0.0, 2.0))]
             => |x| vec![inverse(|place| part(place, x[1]), x[0])];
