@@ -2,6 +2,7 @@
 
 use crate::wavelengths::{WAVELENGTHS_NM, wavelength_grid};
 use airlight::atmosphere::Atmosphere;
+use airlight::axes;
 use airlight::glam::DVec3;
 use airlight::sky::{
     Directions, OrderSettings, RowRay, Sky, SkyError, SkySettings, SunCoverage, View,
@@ -32,14 +33,14 @@ pub(crate) struct XyzWeights {
 /// Azimuths from the sun of the directions of the fit, in half turns.
 const AZIMUTHS: [f64; 5] = [0.05, 0.2, 0.45, 0.7, 1.0];
 /// Elevations above and below the horizon, as parts of the way to the zenith or the limb, and to the nadir.
-const ABOVE: [f64; 6] = [0.005, 0.03, 0.1, 0.3, 0.6, 0.95];
+const ABOVE: [f64; 6] = [0.008, 0.03, 0.1, 0.3, 0.6, 0.95];
 const BELOW: [f64; 4] = [-0.01, -0.05, -0.2, -0.7];
 /// Lengths of the view rays, m: those of aerial perspective, and whole ones.
 const LENGTHS_M: [f64; 2] = [1e4, f64::INFINITY];
 /// Wavelengths between which the ratio to the coarse solution is interpolated, nm; it is constant beyond.
 const RATIO_RANGE_NM: [f64; 2] = [390.0, 730.0];
-/// Heights on the sun's disc, relative to its radius.
-const DISC_HEIGHTS: [f64; 5] = [-0.9, -0.5, 0.0, 0.5, 0.9];
+/// Heights on the sun's disc, as parts of what is above the horizon.
+const DISC_PARTS: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
 /// Weights of sunlight without air among light, transmittances (where it is exact), and the light of the disc. Light counts more, so
 /// that sunlight decides only where the rest is dark.
 const NO_AIR: [f64; 3] = [1e-3, 1e4, 1e-6];
@@ -142,8 +143,12 @@ impl ColourFit {
         }
         let sun = view.sun();
         let across = sun.cross(DVec3::Y).normalize_or(DVec3::X);
-        let up = across.cross(sun) * view.disc().angular_radius_rad;
-        let disc = DISC_HEIGHTS.map(|height| {
+        let radius_rad = view.disc().angular_radius_rad;
+        let up = across.cross(sun) * radius_rad;
+        let above_horizon_rad = axes::elevation_rad(sun) - view.horizon_elevation_rad();
+        let lowest = (-above_horizon_rad / radius_rad).clamp(-1.0, 1.0);
+        let disc = DISC_PARTS.map(|part| {
+            let height = lowest + (1.0 - lowest) * part;
             let direction = (sun + up * height).normalize();
             let [few, many] = [view, &many].map(|view| {
                 let transmittance = view.transmittance_to_space(direction).into_iter();
@@ -303,7 +308,6 @@ mod tests {
     use super::*;
     use airlight::Named;
     use airlight::atmosphere::Preset;
-    use airlight::axes;
 
     /// The colours of the spectra that are fitted, against the solver at sixteen wavelengths.
     #[test]

@@ -352,8 +352,7 @@ mod guards {
 
     /// Prints CIEDE2000 of sky and ground, rms and largest, and of the sun's disc.
     ///
-    /// One of the 108 skies may miss its bounds: hazy air seen from 10 km under a sun at -6 degrees, in which a direction has 1.8. The disc is
-    /// not bounded where its centre has set: the last edge of a sun at -2 degrees, seen from 3 km, is off by 36 to 104.
+    /// One of the 108 skies may miss its bounds: the last 0.03 degrees of a sun at -2 degrees in hazy air, seen from 3 km, are off by 4.5.
     #[test]
     #[ignore = "solves 108 skies twice: five minutes"]
     fn four_wavelengths_give_every_colour_of_sixteen() {
@@ -375,13 +374,9 @@ mod guards {
                         disc.worst
                     );
                     println!("{text}");
-                    if sky.rms() > 0.3 || sky.worst > 1.5 {
+                    if sky.rms() > 0.3 || sky.worst > 1.5 || disc.worst > 0.1 {
                         wrong.push(text);
                     }
-                    let planet = &air.planet;
-                    let dip = (planet.radius_m / (planet.radius_m + height_m)).acos();
-                    let has_set = sun_deg.to_radians() < -dip;
-                    assert!(has_set || disc.worst < 0.15, "disc {:.2}", disc.worst);
                 }
             }
         }

@@ -373,8 +373,6 @@ impl Group {
             (Quantity::Sky, AboveDust, false) => (0.6, 2.0),
             (Quantity::Sky, Space, _) => (0.3, 2.0),
             (Quantity::SkyColour, Air, true) => (0.1, 1.0),
-            // Four wavelengths miss one direction in hazy air, 10 km high.
-            (Quantity::SkyColour, Air, false) => (0.3, 1.6),
             (Quantity::SkyColour, _, _) => (0.3, 1.5),
             (Quantity::Walls, Air | AboveDust, _) => (0.3, 1.5),
             (Quantity::Walls, Space, _) => (0.1, 0.5),
