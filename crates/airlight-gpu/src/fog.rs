@@ -7,7 +7,8 @@ use airlight::atmosphere::DensityProfile;
 use airlight::fog::droplets::Droplets;
 use airlight::fog::visibility::{self, Contrast};
 use airlight::fog::{
-    DirectionalLight, FogLighting, FogScattering, Ground, RgbFog, RgbLayer, effective_top_m,
+    DirectionalLight, FogLighting, FogScattering, Ground, RgbFog, RgbLayer,
+    effective_top_of_layers_m,
 };
 use airlight_shaders::twins::columns::{INFINITE_M, ray_segment};
 use airlight_shaders::twins::exponentials::OPAQUE;
@@ -86,14 +87,11 @@ impl Fog {
 
     /// Height of the fog's effective top, m: sun and sky light the fog as they do there.
     pub(crate) fn top_m(&self) -> f64 {
-        let depth_above = |height_m: f64| {
-            let depth = |layer: &RgbLayer| {
-                let extinction_per_m = layer.extinction_per_m.into_iter().fold(0.0, f32::max);
-                f64::from(extinction_per_m) * layer.density.column_above_m(height_m)
-            };
-            self.layers.iter().map(depth).sum()
-        };
-        effective_top_m(self.ground_height_m, depth_above)
+        let each = self.layers.iter().map(|layer| {
+            let largest = layer.extinction_per_m.into_iter().fold(0.0, f32::max);
+            (&layer.density, largest)
+        });
+        effective_top_of_layers_m(self.ground_height_m, each)
     }
 
     /// The fog in the light of sun and sky at its top.

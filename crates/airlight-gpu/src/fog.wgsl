@@ -1,7 +1,5 @@
 // The fog of the passes of medium.wgsl, behind the functions of airlight-shaders and frame.wgsl.
 
-const MOST_FOG_LAYERS: u32 = 4u;
-
 /// A layer of fog seen from the eye: the view of its tables, and its column.
 struct SeenLayer {
     view: FogTableView,

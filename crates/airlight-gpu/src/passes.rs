@@ -4,7 +4,7 @@ use crate::camera::{Camera, Projection};
 use crate::device_loss::is_device_lost;
 use crate::environment::EnvironmentMap;
 use crate::error::SkyRendererError;
-use crate::fog;
+use crate::fog::{self, MOST_FOG_LAYERS};
 use crate::frame_tables::{FrameTables, SourceTables};
 use crate::gpu_tables::FLAT;
 use crate::lighting::Lighting;
@@ -443,7 +443,11 @@ fn sky_shader() -> String {
 
 /// The passes of the fog.
 fn fog_shader() -> String {
-    source(&[Part::Fog, Part::FogTable, Part::Shadows]) + CORNER + FRAME + include_str!("fog.wgsl")
+    source(&[Part::Fog, Part::FogTable, Part::Shadows])
+        + CORNER
+        + FRAME
+        + &format!("const MOST_FOG_LAYERS: u32 = {MOST_FOG_LAYERS}u;\n")
+        + include_str!("fog.wgsl")
 }
 
 /// The pass of lights in fog.

@@ -2,7 +2,7 @@
 
 use super::error::{FogError, check_light};
 use super::values::ChannelValues;
-use crate::atmosphere::RaySegment;
+use crate::atmosphere::{DensityProfile, RaySegment};
 use crate::names::named;
 use crate::spectrum::SpectralCurve;
 use glam::DVec3;
@@ -110,10 +110,8 @@ impl Ground {
     }
 }
 
-/// Height of a fog's effective top, m, from its optical depth above a height (m), or a multiple of that: 1 % of the depth above the ground
-/// lies above it, and sun and sky light the fog as they do there. It is at most 100 km above the ground; the ground itself where no fog, or
-/// fog without an upper end, lies above that.
-pub fn effective_top_m(ground_height_m: f64, depth_above: impl Fn(f64) -> f64) -> f64 {
+/// [`effective_top_of_layers_m`] from the optical depth above a height, m, or a multiple of that.
+fn effective_top_m(ground_height_m: f64, depth_above: impl Fn(f64) -> f64) -> f64 {
     const ABOVE: f64 = 0.01;
     const HIGHEST_M: f64 = 100e3;
     let whole = depth_above(ground_height_m);
@@ -129,6 +127,26 @@ pub fn effective_top_m(ground_height_m: f64, depth_above: impl Fn(f64) -> f64) -
         }
     }
     high
+}
+
+/// Height of a fog's effective top, m, from the density profiles of its layers and their extinctions at density 1, 1/m: 1 % of the optical
+/// depth above the ground lies above it, and sun and sky light the fog as they do there. It is at most 100 km above the ground; the ground
+/// itself where no fog lies above that. Layers without an upper end do not count.
+pub fn effective_top_of_layers_m<'a>(
+    ground_height_m: f64,
+    layers: impl Iterator<Item = (&'a DensityProfile, f32)> + Clone,
+) -> f64 {
+    let depth_above = |height_m: f64| -> f64 {
+        let depth = |(density, extinction_per_m): (&DensityProfile, f32)| {
+            let column_m = density.column_above_m(height_m);
+            match column_m.is_finite() {
+                true => column_m * f64::from(extinction_per_m),
+                false => 0.0,
+            }
+        };
+        layers.clone().map(depth).sum()
+    };
+    effective_top_m(ground_height_m, depth_above)
 }
 
 impl<C> FogLighting<C> {

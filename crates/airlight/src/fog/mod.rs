@@ -37,7 +37,9 @@ pub use closed_forms::split_sum_error;
 pub use error::FogError;
 pub use even::EvenFog;
 pub use layer::RgbLayer;
-pub use lighting::{DirectionalLight, FogLighting, FogScattering, Ground, effective_top_m};
+pub use lighting::{
+    DirectionalLight, FogLighting, FogScattering, Ground, effective_top_of_layers_m,
+};
 pub use patch_view::PatchView;
 pub use patches::{FogPatches, PatchField};
 pub use spectral::{FOG_STREAMS, Fog, FogTable, RgbFog, RgbFogParts, RgbFogTable};

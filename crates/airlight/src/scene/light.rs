@@ -3,7 +3,8 @@
 use super::lane_channels::Converter;
 use crate::control::{Cancelled, Control};
 use crate::fog::{
-    DirectionalLight, FogLanes, FogLighting, FogScattering, Ground, LayerLanes, effective_top_m,
+    DirectionalLight, FogLanes, FogLighting, FogScattering, Ground, LayerLanes,
+    effective_top_of_layers_m,
 };
 use crate::sky::View;
 use crate::spectrum::Spectrum;
@@ -98,21 +99,11 @@ impl TopLight {
     }
 }
 
-/// [`effective_top_m`] of layers; the height of the ground for fog without an upper end.
+/// [`effective_top_of_layers_m`]; the height of the ground for fog without an upper end.
 pub(super) fn top_m<const N: usize>(layers: &[LayerLanes<N>], ground: &Ground) -> f64 {
-    let above = |height_m: f64| -> f64 {
-        let column = |layer: &LayerLanes<N>| {
-            let column = layer.density.column_above_m(height_m);
-            let extinction = layer.extinction_per_m.max_element();
-            if column.is_finite() {
-                column * f64::from(extinction)
-            } else {
-                0.0
-            }
-        };
-        layers.iter().map(column).sum()
-    };
-    effective_top_m(ground.height_m, above)
+    let each = layers.iter();
+    let each = each.map(|layer| (&layer.density, layer.extinction_per_m.max_element()));
+    effective_top_of_layers_m(ground.height_m, each)
 }
 
 /// Irradiance of the ground below a fog relative to that without the fog.
