@@ -63,12 +63,8 @@ impl SamplePlace {
     /// The place of an angle.
     #[inline(always)]
     pub fn of(angle: HalfAngle<f32>) -> Self {
-        let position = angle.coordinate().clamp(0.0, 1.0) * SAMPLES as f32;
-        let below = (position as i32).min(SAMPLES as i32 - 1);
-        Self {
-            below,
-            fraction: position - below as f32,
-        }
+        let (below, fraction) = angle.among(SAMPLES);
+        Self { below, fraction }
     }
 }
 

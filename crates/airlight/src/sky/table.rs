@@ -366,18 +366,28 @@ impl SkyTable {
         index: usize,
         cells: &mut [f32],
     ) -> [f32; 4] {
-        let stride = COLUMNS * self.width;
-        let (first_row, row_weights) = places.rows.get(index);
         let (first_column, column_weights) = places.columns.get(index);
+        self.between_rows(places.rows.get(index), first_column, cells);
+        column_weights
+    }
+
+    /// Interpolates cells of neighbouring columns, from one on, between four rows.
+    #[inline(always)]
+    fn between_rows(
+        &self,
+        (first_row, weights): (usize, [f32; 4]),
+        first_column: usize,
+        cells: &mut [f32],
+    ) {
+        let stride = COLUMNS * self.width;
         let first = first_row * stride + first_column * self.width;
         let values = &self.values[first..][..3 * stride + cells.len()];
         cells.fill(0.0);
-        for (k, weight) in row_weights.into_iter().enumerate() {
+        for (k, weight) in weights.into_iter().enumerate() {
             for (sum, value) in cells.iter_mut().zip(&values[k * stride..]) {
                 *sum += weight * value;
             }
         }
-        column_weights
     }
 
     /// Interpolates the four cells of neighbouring columns, applies the phase functions and sums the parts.
@@ -466,15 +476,8 @@ impl SkyTable {
         let mut rows = Cubics::<1>::NONE;
         let place = self.rows.place(elevation);
         self.rows.set(&mut rows, 0, elevation, place);
-        let stride = COLUMNS * self.width;
-        let (first, weights) = rows.get(0);
-        let mut cells = vec![0.0f32; stride];
-        for (k, weight) in weights.into_iter().enumerate() {
-            let values = &self.values[(first + k) * stride..][..stride];
-            for (sum, value) in cells.iter_mut().zip(values) {
-                *sum += weight * value;
-            }
-        }
+        let mut cells = vec![0.0; COLUMNS * self.width];
+        self.between_rows(rows.get(0), 0, &mut cells);
         cells
     }
 

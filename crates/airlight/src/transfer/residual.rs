@@ -130,6 +130,17 @@ impl<T: Real> HalfAngle<T> {
     }
 }
 
+impl HalfAngle<f32> {
+    /// Interval that contains the angle, of a number of even ones in [`HalfAngle::coordinate`], and the part of it below the angle. Without
+    /// branches: loops over many angles run in vector registers.
+    #[inline(always)]
+    pub fn among(self, intervals: usize) -> (i32, f32) {
+        let position = self.coordinate().clamp(0.0, 1.0) * intervals as f32;
+        let below = (position as i32).min(intervals as i32 - 1);
+        (below, position - below as f32)
+    }
+}
+
 /// Cosine of the angle at a [`HalfAngle::coordinate`].
 pub(crate) fn cosine_at(x: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
@@ -251,10 +262,7 @@ impl<const N: usize> Residual<N> {
         let mut below = [0; R];
         let mut fractions = [0.0; R];
         for i in 0..R {
-            let x: f32 = HalfAngle::of_cosine(nu[i]).coordinate();
-            let position = x.clamp(0.0, 1.0) * INTERVALS as f32;
-            below[i] = (position as i32).min(INTERVALS as i32 - 1);
-            fractions[i] = position - below[i] as f32;
+            (below[i], fractions[i]) = HalfAngle::of_cosine(nu[i]).among(INTERVALS);
         }
         let mut shares = [[Spectrum::ZERO; N]; STREAMS];
         for i in 0..R {
