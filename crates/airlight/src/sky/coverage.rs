@@ -96,18 +96,16 @@ impl SunCoverage {
             return all_zeniths_deg();
         }
         let centre = (90.0 - sun_elevation_deg).clamp(0.0, NIGHT_DEG);
-        // In twilight the light comes from air beyond the horizon, where the sun is higher, and it fades faster with each
-        // degree the deeper the sun is.
-        let twilight = centre > 86.0;
-        let lowest = (centre - range - if twilight { 8.0 } else { 5.0 }).max(0.0);
-        let highest = (centre + range + 2.0).min(NIGHT_DEG);
+        let lowest = (centre - range - MARGIN_DEG).max(0.0);
+        let highest = (centre + range + MARGIN_DEG).min(NIGHT_DEG);
         let mut zeniths = vec![centre];
         for (side, end) in [(-1.0, lowest), (1.0, highest)] {
-            let (mut step, growth) = if twilight {
-                (1.1, if centre > 98.0 { 1.17 } else { 1.35 })
-            } else {
-                // The light varies with the air mass of the sunlight.
-                (f64::max(1.5, 0.25 * (90.0 - centre)), 1.6)
+            // Most of the light that an eye sees was scattered nearby, under almost the same sun. By day light varies with the air mass
+            // of the sunlight; in twilight it fades with each degree, faster the deeper the sun is.
+            let (mut step, growth) = match centre {
+                ..=86.0 => (f64::max(1.5, 0.35 * (90.0 - centre)), 2.0),
+                ..=98.0 => (1.1, 2.0),
+                _ => (0.8, 1.2),
             };
             let mut zenith = centre;
             while (zenith - end) * side < 0.0 {
@@ -131,6 +129,9 @@ impl SunCoverage {
 /// Range of a view beyond which it is prepared for all suns, degrees.
 const WIDE_DEG: f64 = 15.0;
 
+/// What views of a sun nearby may differ in, degrees.
+const MARGIN_DEG: f64 = 2.0;
+
 /// Largest difference of the sun's zenith angle along the view rays of an eye above the ground, degrees: a ray extends to the horizon
 /// of the highest air, where the sun's zenith angle differs by the curvature of the planet along the way.
 fn range_deg(altitude_m: f64, ground_radius_m: f64, top_radius_m: f64) -> f64 {
@@ -145,11 +146,12 @@ fn range_deg(altitude_m: f64, ground_radius_m: f64, top_radius_m: f64) -> f64 {
 /// Zenith angles over the whole range: coarse for high suns, every degree through twilight.
 fn all_zeniths_deg() -> Vec<f64> {
     zeniths_deg(NIGHT_DEG, |zenith| match zenith {
-        z if z < 55.0 => 7.0,
-        z if z < 73.0 => 4.0,
-        z if z < 83.0 => 2.0,
-        z if z < 112.0 => 1.0,
-        _ => 2.0,
+        z if z < 60.0 => 15.0,
+        z if z < 72.0 => 6.0,
+        z if z < 84.0 => 3.0,
+        z if z < 87.0 => 1.5,
+        z if z < 108.0 => 1.0,
+        _ => 1.5,
     })
 }
 
