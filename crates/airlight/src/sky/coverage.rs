@@ -105,6 +105,7 @@ impl SunCoverage {
             let (mut step, growth) = match centre {
                 ..=86.0 => (f64::max(1.5, 0.35 * (90.0 - centre)), 2.0),
                 ..=98.0 => (1.1, 2.0),
+                ..=104.0 => (0.8, 1.35),
                 _ => (0.8, 1.2),
             };
             let mut zenith = centre;
