@@ -11,8 +11,8 @@ use pyo3::prelude::*;
 /// Parameters
 /// ----------
 /// suites : list of str or None
-///     ``tables``, ``monte-carlo``, ``limits``, ``peers``, ``measured``; None: all of these, which takes minutes. The suites of
-///     frames of a graphics device are those of the program alone.
+///     ``tables``, ``monte-carlo``, ``limits``, ``random-airs``, ``peers``, ``measured``; None: all of these, which takes minutes.
+///     The suites of frames of a graphics device are those of the program alone.
 /// threads : int or None
 ///     Number of threads.
 ///

@@ -13,6 +13,8 @@ pub enum Suite {
     MonteCarlo,
     /// Skies around the sun, polarised, and of thick air compared with Airlight's Monte Carlo and discrete ordinates.
     Limits,
+    /// Skies of random airs, suns, eyes and views compared with Airlight's Monte Carlo.
+    RandomAirs,
     /// Other sky models compared with Airlight: differences, without a reference.
     Peers,
     /// The sky measured on 27 May 2013.
@@ -29,6 +31,7 @@ airlight::named! { Suite, "a set of comparisons", [
     ("tables", (Tables), "skies against tables of an independent Monte Carlo, SASKTRAN2 and libRadtran"),
     ("monte-carlo", (MonteCarlo), "skies in daylight and twilight against Airlight's Monte Carlo solver"),
     ("limits", (Limits), "the sky around the sun, polarised light and optically thick air against Monte Carlo and discrete ordinates"),
+    ("random-airs", (RandomAirs), "skies of random airs, suns, eyes and views against Airlight's Monte Carlo"),
     ("peers", (Peers), "published sky models against the default solver"),
     ("measured", (Measured), "the sky measured on 27 May 2013 against the solver and published models"),
     ("gpu", (Gpu), "frames of airlight-gpu and of published real-time models in hazy air against the fine solver (a minute; needs a graphics device)"),
@@ -38,10 +41,11 @@ airlight::named! { Suite, "a set of comparisons", [
 
 impl Suite {
     /// The suites that need no graphics device.
-    pub const USUAL: [Self; 5] = [
+    pub const USUAL: [Self; 6] = [
         Self::Tables,
         Self::MonteCarlo,
         Self::Limits,
+        Self::RandomAirs,
         Self::Peers,
         Self::Measured,
     ];
@@ -52,6 +56,7 @@ impl Suite {
             Self::Tables => "Skies against tables of other solvers",
             Self::MonteCarlo => "Skies by day and in twilight against Airlight's Monte Carlo",
             Self::Limits => "Skies around the sun, polarised, and of optically thick air",
+            Self::RandomAirs => "Skies of random airs against Airlight's Monte Carlo",
             Self::Peers => "Differences to other models of the sky (without a reference)",
             Self::Measured => "The sky measured at Ithaca on 27 May 2013",
             Self::Gpu => {

@@ -4,7 +4,8 @@
 //! checks of some [`Suite`]s; [`report`] writes them.
 //!
 //! Modules, each importing only from those above it: [`check`] (rows and their statistics), [`table`] (the embedded tables),
-//! [`solved`] (a sky solved at a table's wavelengths), [`skies`] (tables of skies), [`limits`] (skies where solvers fail), [`measured`] (the measured sky),
+//! [`solved`] (a sky solved at a table's wavelengths), [`skies`] (tables of skies), [`limits`] (skies where solvers fail), [`random_airs`] (random skies),
+//! [`measured`] (the measured sky),
 //! `frames` (frames of a graphics device, with the feature `gpu`), [`report`].
 
 pub mod check;
@@ -12,6 +13,7 @@ pub mod check;
 pub mod frames;
 pub mod limits;
 pub mod measured;
+pub mod random_airs;
 pub mod report;
 pub mod skies;
 pub mod solved;
@@ -58,6 +60,7 @@ pub fn run_with(suites: &[Suite], control: Control<'_>) -> Result<Vec<Check>, Ru
             Suite::Tables => skies::checks(control)?,
             Suite::MonteCarlo => skies::against_truth(&SkySettings::default(), control)?,
             Suite::Limits => limits::checks(control)?,
+            Suite::RandomAirs => random_airs::checks(&SkySettings::default(), control)?,
             Suite::Peers => skies::peers(control)?,
             Suite::Measured => measured::checks(control)?,
             #[cfg(feature = "gpu")]

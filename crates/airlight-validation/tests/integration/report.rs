@@ -2,17 +2,19 @@
 
 use airlight::Control;
 use airlight::sky::SkySettings;
-use airlight_validation::{Check, Suite, measured, run, skies};
+use airlight_validation::{Check, Suite, measured, random_airs, run, skies};
 
 fn print(check: &Check) {
     let s = check.statistics().expect("a check has rows");
     println!(
-        "{} | {}: {} values, mean {:+.2} {unit}, rms {:.2}, worst {:+.2} at {}",
+        "{} | {}: {} values, mean {:+.2} {unit}, rms {:.2} (noise {:.2}), 95 % within {:.2}, worst {:+.2} at {}",
         check.what,
         check.against,
         s.count,
         s.mean,
         s.rms,
+        s.noise,
+        s.percentile_95,
         s.worst,
         s.worst_at,
         unit = check.unit
@@ -60,6 +62,42 @@ fn fine_settings_agree_with_the_monte_carlo() {
             (false, false) => 3.0,
         });
         assert!(check.holds(), "{}: {:?}", check.what, check.broken());
+    }
+}
+
+#[test]
+#[ignore = "random skies solved for, also with the fine settings"]
+fn random_skies_agree_with_the_monte_carlo() {
+    let default = hold(Suite::RandomAirs);
+    let fine = random_airs::checks(&SkySettings::fine(), Control::default()).unwrap();
+    for check in &fine {
+        print(check);
+        assert!(check.holds(), "{}: {:?}", check.what, check.broken());
+    }
+    for checks in [default, fine] {
+        let counts: Vec<usize> = checks.iter().map(|check| check.rows.len()).collect();
+        // 25 airs with an aerosol and 11 of layers.
+        assert_eq!(
+            counts,
+            [25, 11].map(|n| n * random_airs::WAVELENGTHS_NM.len())
+        );
+    }
+}
+
+#[test]
+fn random_skies_follow_from_their_numbers() {
+    let numbers = random_airs::AEROSOLS.chain(random_airs::LAYERS);
+    for number in numbers.step_by(12) {
+        let case = random_airs::RandomSky::new(number);
+        assert_eq!(case.air, random_airs::RandomSky::new(number).air);
+        let air = case.atmosphere();
+        let particles = air.constituents.iter().filter(|part| {
+            let depth = part.optical_depth(0.0, air.planet.top_altitude_m, 550.0);
+            depth > 0.0 && part.phase.legendre_moments(2, 550.0)[1].abs() > 1e-6
+        });
+        assert!(particles.count() >= 1, "{case:?}");
+        assert!((-6.0..90.0).contains(&case.sun_elevation_deg) && case.altitude_m < 15e3);
+        assert!(case.elevation_deg.abs() <= 90.0, "{case:?}");
     }
 }
 
