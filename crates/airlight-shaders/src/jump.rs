@@ -31,9 +31,13 @@ impl Jump {
     /// Largest ratio, and the inverse of the smallest.
     const MOST: f32 = 1e4;
 
-    /// The jump that is nearest to the eye of a view.
+    /// The jump that is nearest to the eye of a view; none for an eye deep below it, which sees it from the side of the ground alone.
     pub fn nearest(split: &SplitView, coordinates: &TableCoordinates) -> Self {
-        let Some(height_m) = coordinates.jump_height_m else {
+        /// Distance below a jump from which on tables without it are as good, m.
+        const DEEP_M: f64 = 1.5e3;
+        let (ground_radius_m, _) = split.view().bounds_m();
+        let eye_m = split.view().radius_m() - ground_radius_m;
+        let Some(height_m) = coordinates.jump_height_m.filter(|m| m - eye_m < DEEP_M) else {
             return Self::NONE;
         };
         let air = split.view().sky().atmosphere();
