@@ -26,16 +26,8 @@ pub struct SkySolver {
     settings: SkySettings,
     fit: Arc<ColourFit>,
     space: RgbSpace,
-    kept: Kept<LitPlace, (SourceTables, Lighting)>,
-    kept_air: Kept<(f64, LightSource), (SourceTables, Lighting)>,
-}
-
-/// What the tables of a source depend on.
-#[derive(Clone, Debug, PartialEq)]
-struct LitPlace {
-    height_m: f64,
-    source: LightSource,
-    fog: Option<Fog>,
+    kept: Kept<(f64, LightSource), (SourceTables, Lighting)>,
+    kept_in_fog: Kept<(f64, LightSource, Fog), (SourceTables, Lighting)>,
 }
 
 /// What was computed for the last sources, the latest last. Clones share it.
@@ -115,7 +107,7 @@ impl SkySolver {
             fit: Arc::new(ColourFit::new(atmosphere, settings.suns)?),
             space,
             kept: Kept::default(),
-            kept_air: Kept::default(),
+            kept_in_fog: Kept::default(),
         })
     }
 
@@ -144,7 +136,7 @@ impl SkySolver {
         Ok(Self {
             single: Some(single),
             kept: Kept::default(),
-            kept_air: Kept::default(),
+            kept_in_fog: Kept::default(),
             ..self
         })
     }
@@ -198,39 +190,44 @@ impl SkySolver {
         source: LightSource,
         fog: Option<&Fog>,
     ) -> Result<Arc<(SourceTables, Lighting)>, SkyRendererError> {
-        let place = LitPlace {
-            height_m,
-            source,
-            fog: fog.cloned(),
+        check(height_m, &source)?;
+        let in_air = || {
+            let fill = || self.fill(height_m, source);
+            self.kept.get_or((height_m, source), fill)
         };
-        self.kept.get_or(place, || self.fill(height_m, source, fog))
+        match fog {
+            Some(fog) => {
+                let place = (height_m, source, fog.clone());
+                let put = || {
+                    fog.validate()?;
+                    self.in_fog(height_m, source, fog, &*in_air()?)
+                };
+                self.kept_in_fog.get_or(place, put)
+            }
+            None => in_air(),
+        }
     }
 
-    /// Fills the tables of the light of a source, and its light at the eye.
-    fn fill(
+    /// The tables of a source and its light at the eye with fog, from those without.
+    fn in_fog(
         &self,
         height_m: f64,
         source: LightSource,
-        fog: Option<&Fog>,
+        fog: &Fog,
+        in_air: &(SourceTables, Lighting),
     ) -> Result<(SourceTables, Lighting), SkyRendererError> {
-        check(height_m, &source)?;
-        fog.map_or(Ok(()), Fog::validate)?;
-        let in_air = || self.fill_air(height_m, source);
-        let in_air = self.kept_air.get_or((height_m, source), in_air)?;
-        let (mut tables, mut lighting) = (*in_air).clone();
-        if let Some(fog) = fog {
-            let lit = self.lit_fog(fog, source, &tables.sky)?;
-            let sky = tables.sky.over_ground_in_part(ground_share(&lit));
-            let frame = fog.frame(height_m, &lit, &sky)?;
-            let to_sun = frame.path(lighting.sun).transmittance;
-            lighting = lighting.in_fog(to_sun, |d| frame.in_front_of(sky.rgb_radiance(d), d));
-            (tables.sky, tables.fog) = (sky, Some(frame));
-        }
+        let (mut tables, lighting) = in_air.clone();
+        let lit = self.lit_fog(fog, source, &tables.sky)?;
+        let sky = tables.sky.over_ground_in_part(ground_share(&lit));
+        let frame = fog.frame(height_m, &lit, &sky)?;
+        let to_sun = frame.path(lighting.sun).transmittance;
+        let lighting = lighting.in_fog(to_sun, |d| frame.in_front_of(sky.rgb_radiance(d), d));
+        (tables.sky, tables.fog) = (sky, Some(frame));
         Ok((tables, lighting))
     }
 
     /// Fills the tables of the light of a source in the air, without fog.
-    fn fill_air(
+    fn fill(
         &self,
         height_m: f64,
         source: LightSource,
