@@ -315,37 +315,38 @@ struct Aerial {
 fn aerial(split: &SplitView, eye: &Eye, view: &twin::SkyView) -> Aerial {
     let [columns, rows, distances] = aerial_size();
     let mut rays = Vec::with_capacity(rows);
-    let mut starts_m = Vec::with_capacity(rows);
+    // By row and step: the length of the ray in the air, m, and the part of it below a jump of density.
+    let mut lengths_m = Vec::with_capacity(rows * distances);
+    let mut shares = Vec::with_capacity(rows * distances);
     for row in 0..rows {
         let (elevation, is_below) = eye.elevation(row, AERIAL_ROWS);
-        let span = twin::air_span_m(*view, elevation.sin() as f32, is_below);
+        let sine = elevation.sin() as f32;
+        let span = twin::air_span_m(*view, sine, is_below);
         let (start_m, length_m) = (f64::from(span.x), f64::from(span.y - span.x));
         let first_step = twin::first_step(*view, span, is_below);
-        starts_m.push(start_m);
         let stops_m = (0..distances).map(|step| {
             let place = (step as f64).max(FIRST_STEP) / (distances - 1) as f64;
             start_m + length_m * f64::from(twin::part_from_place(place as f32, first_step))
         });
         let stops_m: Vec<f64> = stops_m.collect();
+        for stop_m in &stops_m {
+            let length_m = (stop_m - start_m) as f32;
+            let share = twin::share_below_jump(*view, span, sine, length_m, is_below);
+            lengths_m.push(length_m);
+            shares.push(share);
+        }
         let directions = (0..columns).map(|column| eye.direction(column, columns, elevation));
         rays.push((directions.collect(), stops_m));
     }
     let paths = split.many_paths(&rays);
     // Relative to what is below a jump of density, so that nothing jumps.
-    let length_m = |row: usize, step: usize| (rays[row].1[step] - starts_m[row]) as f32;
-    let share = |row: usize, step: usize| {
-        let (elevation, is_below) = eye.elevation(row, AERIAL_ROWS);
-        let sine = elevation.sin() as f32;
-        let span = twin::air_span_m(*view, sine, is_below);
-        twin::share_below_jump(*view, span, sine, length_m(row, step), is_below)
-    };
     let relative = |above: Vec4, share: f32| above.lerp(Vec4::ONE, share);
     let mut smooth = vec![Vec4::ZERO; columns * rows * distances];
     let mut haze = smooth.clone();
     for (index, path) in paths.iter().flatten().enumerate() {
         for (step, stop) in path.iter().enumerate() {
             let texel = step * columns * rows + index;
-            let share = share(index / columns, step);
+            let share = shares[index / columns * distances + step];
             let opacity = vec4(&stop.optical_depth).map_lanes(|depth| -(-depth).exp_m1());
             let opacity = opacity / relative(view.extinction_above, share);
             smooth[texel] = source(&stop.smooth, opacity) / relative(view.smooth_above, share);
@@ -355,8 +356,8 @@ fn aerial(split: &SplitView, eye: &Eye, view: &twin::SkyView) -> Aerial {
     let mut extinction = Vec::with_capacity(rows * distances);
     for row in 0..rows {
         let mean = |(step, stop): (usize, &SplitPath)| {
-            let length_km = 1e-3 * length_m(row, step);
-            let relative = relative(view.extinction_above, share(row, step));
+            let length_km = 1e-3 * lengths_m[row * distances + step];
+            let relative = relative(view.extinction_above, shares[row * distances + step]);
             match length_km > 0.0 {
                 true => vec4(&stop.optical_depth) / (length_km * relative),
                 false => Vec4::ZERO,
