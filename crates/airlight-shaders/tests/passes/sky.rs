@@ -9,10 +9,8 @@ use airlight::sky::{Sky, SkySettings, SunCoverage};
 use airlight::spectrum::RgbSpace;
 use airlight_shaders::twins::colour::RgbWeights;
 use airlight_shaders::twins::path_optics::apply_path_optics;
-use airlight_shaders::twins::texture::Texture;
 use airlight_shaders::{ColourFit, Pass, SkyTables, wavelength_grid};
 use glam::Vec3;
-use wgpu::util::DeviceExt;
 
 const EYE: Vec3 = Vec3::new(0.0, 2.0, 0.0);
 const COLOUR: [f32; 4] = [5000.0, 2500.0, 1250.0, 1.0];
@@ -57,32 +55,6 @@ fn uniform(tables: &SkyTables) -> Vec<u8> {
     numbers.iter().flat_map(|x| x.to_ne_bytes()).collect()
 }
 
-/// A table on the device.
-fn uploaded(device: &wgpu::Device, queue: &wgpu::Queue, table: &Texture) -> wgpu::TextureView {
-    let [width, height, depth] = table.size().map(|n| n as u32);
-    let descriptor = wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d {
-            width,
-            height,
-            depth_or_array_layers: depth,
-        },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: match depth {
-            1 => wgpu::TextureDimension::D2,
-            _ => wgpu::TextureDimension::D3,
-        },
-        format: wgpu::TextureFormat::Rgba16Float,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    };
-    let bytes = table.half_float_bytes();
-    let order = wgpu::util::TextureDataOrder::default();
-    let texture = device.create_texture_with_data(queue, &descriptor, order, &bytes);
-    texture.create_view(&Default::default())
-}
-
 #[test]
 fn the_pass_draws_what_the_tables_hold() {
     let (_, device, queue) = vulkan::open();
@@ -103,7 +75,7 @@ fn the_pass_draws_what_the_tables_hold() {
         &tables.extinction,
         &tables.phase,
     ]
-    .map(|table| uploaded(&device, &queue, table));
+    .map(|table| vulkan::uploaded(&device, &queue, table));
     let mut resources = vec![
         wgpu::BindingResource::TextureView(&colours),
         wgpu::BindingResource::TextureView(&depth),

@@ -112,7 +112,11 @@ impl Device {
         }];
         let places = entry.textures.iter();
         let views: Vec<(u32, wgpu::TextureView)> = places
-            .map(|&place| (place as u32, self.texture(&shader.textures[place].name())))
+            .map(|&place| {
+                let table = textures::named(&shader.textures[place].name());
+                let view = vulkan::uploaded(&self.device, &self.queue, table);
+                (place as u32, view)
+            })
             .collect();
         for (place, view) in &views {
             entries.push(wgpu::BindGroupEntry {
@@ -171,35 +175,5 @@ impl Device {
             .map(|bytes| f32::from_ne_bytes(*bytes))
             .collect();
         results.chunks(width).map(<[f32]>::to_vec).collect()
-    }
-}
-
-impl Device {
-    /// A texture of [`textures`] on the device.
-    fn texture(&self, name: &str) -> wgpu::TextureView {
-        let texture = textures::named(name);
-        let [width, height, depth] = texture.size().map(|n| n as u32);
-        let bytes = texture.half_float_bytes();
-        let descriptor = wgpu::TextureDescriptor {
-            label: Some(name),
-            size: wgpu::Extent3d {
-                width,
-                height,
-                depth_or_array_layers: depth,
-            },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: match depth {
-                1 => wgpu::TextureDimension::D2,
-                _ => wgpu::TextureDimension::D3,
-            },
-            format: wgpu::TextureFormat::Rgba16Float,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        };
-        let order = wgpu::util::TextureDataOrder::default();
-        self.device
-            .create_texture_with_data(&self.queue, &descriptor, order, &bytes)
-            .create_view(&wgpu::TextureViewDescriptor::default())
     }
 }

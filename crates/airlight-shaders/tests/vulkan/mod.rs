@@ -1,5 +1,8 @@
 //! The Vulkan device of the tests.
 
+use airlight_shaders::twins::texture::Texture;
+use wgpu::util::{DeviceExt, TextureDataOrder};
+
 /// The first Vulkan device, with its name and driver.
 ///
 /// # Panics
@@ -23,4 +26,30 @@ pub fn open() -> (String, wgpu::Device, wgpu::Queue) {
     let info = adapter.get_info();
     let name = format!("{}, {}", info.name, info.driver_info);
     (name, device, queue)
+}
+
+/// A table on the device.
+pub fn uploaded(device: &wgpu::Device, queue: &wgpu::Queue, table: &Texture) -> wgpu::TextureView {
+    let [width, height, depth] = table.size().map(|n| n as u32);
+    let descriptor = wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d {
+            width,
+            height,
+            depth_or_array_layers: depth,
+        },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: match depth {
+            1 => wgpu::TextureDimension::D2,
+            _ => wgpu::TextureDimension::D3,
+        },
+        format: wgpu::TextureFormat::Rgba16Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    };
+    let bytes = table.half_float_bytes();
+    let order = TextureDataOrder::default();
+    let texture = device.create_texture_with_data(queue, &descriptor, order, &bytes);
+    texture.create_view(&Default::default())
 }
