@@ -66,6 +66,11 @@ impl PixelChannels {
         }
     }
 
+    /// True if the values of a pixel are those that a view returns.
+    pub fn are_those_of_views(&self) -> bool {
+        self.spectral.is_none()
+    }
+
     /// Channel names of a spectral picture; `None` for RGB.
     pub fn layout(&self) -> Option<&SpectralLayout> {
         self.spectral.as_ref().map(|(layout, _)| layout)

@@ -87,6 +87,29 @@ impl<'a> SkyRows<'a> {
         }
     }
 
+    /// Adds the radiance of a row to its pixels, which are 0.
+    fn add_view(&self, view: &dyn RadianceView, y: u32, directions: &[DVec3], out: &mut [f32]) {
+        if self.channels.are_those_of_views() {
+            self.sample_row(view, y, directions, out);
+            if self.scale != 1.0 {
+                out.iter_mut().for_each(|value| *value *= self.scale);
+            }
+        } else {
+            let mut values = vec![0.0; directions.len() * self.channels.view_count()];
+            self.sample_row(view, y, directions, &mut values);
+            self.add(&values, out);
+        }
+    }
+
+    /// Adds radiance in the channels of the view to pixels.
+    fn add(&self, values: &[f32], out: &mut [f32]) {
+        let pixels = out.chunks_exact_mut(self.channels.count());
+        let values = values.chunks_exact(self.channels.view_count());
+        for (values, pixel) in values.zip(pixels) {
+            self.channels.add(values, self.scale, pixel);
+        }
+    }
+
     /// Radiance of a row in the channels of the view.
     fn sample_row(
         &self,
@@ -105,28 +128,47 @@ impl<'a> SkyRows<'a> {
             }
             _ => {
                 view.radiance(directions, values);
-                let pixels = values.chunks_exact_mut(view.channel_count());
-                for ((i, &direction), values) in (0..).zip(directions).zip(pixels) {
-                    if direction != DVec3::ZERO && at_horizon(direction) {
-                        self.average_pixel(view, (i, y), values);
-                    }
-                }
+                let crossed: Vec<u32> = (0..)
+                    .zip(directions)
+                    .filter(|(_, direction)| **direction != DVec3::ZERO && at_horizon(**direction))
+                    .map(|(i, _)| i)
+                    .collect();
+                self.average_pixels(view, (&crossed, y), values);
             }
         }
     }
 
-    /// Mean over a pixel that the horizon crosses.
-    fn average_pixel(&self, view: &dyn RadianceView, pixel: (u32, u32), values: &mut [f32]) {
-        let directions: Vec<DVec3> = directions_within(self.rows.frame(), pixel).collect();
-        let count = values.len();
-        let mut radiance = vec![0.0; directions.len() * count];
-        view.radiance(&directions, &mut radiance);
-        values.fill(0.0);
-        for sample in radiance.chunks_exact(count) {
-            values.iter_mut().zip(sample).for_each(|(sum, v)| *sum += v);
+    /// Replaces the values of pixels of row `y` that the horizon crosses by their means over each pixel.
+    fn average_pixels(
+        &self,
+        view: &dyn RadianceView,
+        (columns, y): (&[u32], u32),
+        values: &mut [f32],
+    ) {
+        /// Number of pixels whose directions are evaluated together.
+        const TOGETHER: usize = 64;
+        let count = view.channel_count();
+        for columns in columns.chunks(TOGETHER) {
+            let mut directions = Vec::new();
+            let mut ends = Vec::new();
+            for &i in columns {
+                directions.extend(directions_within(self.rows.frame(), (i, y)));
+                ends.push(directions.len());
+            }
+            let mut radiance = vec![0.0; directions.len() * count];
+            view.radiance(&directions, &mut radiance);
+            let mut start = 0;
+            for (&i, end) in columns.iter().zip(ends) {
+                let mean = &mut values[i as usize * count..][..count];
+                mean.fill(0.0);
+                for sample in radiance[start * count..end * count].chunks_exact(count) {
+                    mean.iter_mut().zip(sample).for_each(|(sum, v)| *sum += v);
+                }
+                let points = (end - start).max(1) as f32;
+                mean.iter_mut().for_each(|sum| *sum /= points);
+                start = end;
+            }
         }
-        let points = directions.len().max(1) as f32;
-        values.iter_mut().for_each(|sum| *sum /= points);
     }
 }
 
@@ -141,24 +183,13 @@ impl RowSource for SkyRows<'_> {
         let mut directions = vec![DVec3::ZERO; width];
         self.rows.fill(y, &mut directions);
         out.fill(0.0);
-        let count = self.channels.view_count();
-        let put = |values: &[f32], out: &mut [f32]| {
-            let pixels = out.chunks_exact_mut(self.channels.count());
-            for (values, pixel) in values.chunks_exact(count).zip(pixels) {
-                self.channels.add(values, self.scale, pixel);
-            }
-        };
         match self.sky {
             None => {}
             Some(SkyValues::Stored { values, first_row }) => {
-                let start = (y - first_row) as usize * width * count;
-                put(&values[start..][..width * count], out);
+                let row = width * self.channels.view_count();
+                self.add(&values[(y - first_row) as usize * row..][..row], out);
             }
-            Some(SkyValues::View(view)) => {
-                let mut values = vec![0.0; width * count];
-                self.sample_row(view, y, &directions, &mut values);
-                put(&values, out);
-            }
+            Some(SkyValues::View(view)) => self.add_view(view, y, &directions, out),
         }
         if let Some(stars) = &self.stars {
             stars.add_row(y, self.scale, self.channels, out);

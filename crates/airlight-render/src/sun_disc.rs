@@ -74,6 +74,11 @@ impl SunDiscImage {
     ) {
         let reach = self.radius_rad + pixel_reach;
         let nearest = if reach < 3.0 { reach.cos() } else { -2.0 };
+        if frame.row_elevation_rad(y).is_some_and(|elevation_rad| {
+            (elevation_rad - axes::elevation_rad(self.sun)).abs() > reach
+        }) {
+            return;
+        }
         for ((i, direction), pixel) in (0..)
             .zip(directions)
             .zip(out.chunks_exact_mut(channels.count()))

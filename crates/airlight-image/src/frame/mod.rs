@@ -87,6 +87,12 @@ impl Frame {
         self.direction(f64::from(i) + 0.5, f64::from(j) + 0.5)
     }
 
+    /// Elevation at the pixel centres of row `j`, rad; `None` for projections whose rows have no single elevation.
+    pub fn row_elevation_rad(&self, j: u32) -> Option<f64> {
+        let is_level = matches!(self.projection, Projection::Equirectangular { .. });
+        is_level.then(|| self.lens.elevation(f64::from(j) + 0.5))
+    }
+
     /// Pixel coordinates of a direction (of any length above 0); `None` outside the picture.
     pub fn pixel_of(&self, direction: DVec3) -> Option<(f64, f64)> {
         let unit = direction.try_normalize()?;

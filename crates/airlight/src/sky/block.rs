@@ -1,6 +1,7 @@
 //! Solutions for blocks of 4, 8 or 16 wavelengths behind a common interface.
 
 use super::air::{Air, Scatterer};
+use super::between_azimuths::BetweenAzimuths;
 use super::field::{Diffuse, FieldGrid, ground_irradiance};
 use super::orders;
 use super::peaked::{Part, Peaked, Scattered};
@@ -80,8 +81,9 @@ pub trait Block: Send + Sync {
     /// Scattering by a constituent at the cosine `nu` of the angle.
     fn scattered(&self, constituent: usize, nu: f64) -> Scattered;
 
-    /// Mean over the azimuth of the light along the rays of a row, which is that of a ring, at an even number of even steps.
-    fn mean_over_azimuth(&self, row: &TableRow, ring: &Ring) -> Vec<f32>;
+    /// Mean over the azimuth of the light along the rays of a row, which is that of a ring, at even steps.
+    fn mean_over_azimuth(&self, row: &TableRow, between: &BetweenAzimuths, ring: &Ring)
+    -> Vec<f32>;
 
     /// Adds the light along each ray of `rows` to `out`. Each ray has `width` values: the smooth light in each channel, then each of
     /// the parts in each channel, divided by the mean phase function.
@@ -90,7 +92,7 @@ pub trait Block: Send + Sync {
     /// [`Cancelled`].
     fn fill(
         &self,
-        rows: &[TableRow],
+        rows: (&[TableRow], &BetweenAzimuths),
         matrix: &ChannelMatrix,
         peaked: &Peaked,
         width: usize,
@@ -326,17 +328,22 @@ impl<const N: usize> Block for Solved<N> {
         }
     }
 
-    fn mean_over_azimuth(&self, row: &TableRow, ring: &Ring) -> Vec<f32> {
+    fn mean_over_azimuth(
+        &self,
+        row: &TableRow,
+        between: &BetweenAzimuths,
+        ring: &Ring,
+    ) -> Vec<f32> {
         let mean = vectorized(
             #[inline(always)]
-            || self.row_mean(row, ring),
+            || self.row_mean(row, between, ring),
         );
         self.used(&mean)
     }
 
     fn fill(
         &self,
-        rows: &[TableRow],
+        (rows, between): (&[TableRow], &BetweenAzimuths),
         matrix: &ChannelMatrix,
         peaked: &Peaked,
         width: usize,
@@ -355,7 +362,7 @@ impl<const N: usize> Block for Solved<N> {
             vectorized(
                 #[inline(always)]
                 || {
-                    let light = self.row_light(row);
+                    let light = self.row_light(row, between);
                     for (slot, cell) in out.chunks_exact_mut(width).enumerate() {
                         self.fill_cell(&light, row, slot, &weights, peaked, cell);
                     }
@@ -381,45 +388,16 @@ impl<const N: usize> RowLight<N> {
     }
 }
 
-/// Light along all rays of a row from that of every second one, interpolated to the seventh degree: the light is symmetric about the
-/// azimuths of the first and of the last ray.
-#[inline(always)]
-fn with_halfway_rays<const N: usize>(
-    every_second: &[Spectrum<N>],
-    rays: usize,
-) -> Vec<Spectrum<N>> {
-    const WEIGHTS: [f32; 4] = [
-        1225.0 / 2048.0,
-        -245.0 / 2048.0,
-        49.0 / 2048.0,
-        -5.0 / 2048.0,
-    ];
-    let last = rays - 1;
-    let at = |ray: usize| every_second[(if ray > last { 2 * last - ray } else { ray }) / 2];
-    let of_ray = |ray: usize| {
-        if ray.is_multiple_of(2) {
-            return at(ray);
-        }
-        let mut sum = Spectrum::ZERO;
-        for (k, weight) in WEIGHTS.into_iter().enumerate() {
-            let distance = 2 * k + 1;
-            sum = sum.scale_acc(at(ray.abs_diff(distance)) + at(ray + distance), weight);
-        }
-        sum.max_scalar(0.0)
-    };
-    (0..rays).map(of_ray).collect()
-}
-
 impl<const N: usize> Solved<N> {
     #[inline(always)]
-    fn row_light(&self, row: &TableRow) -> RowLight<N> {
+    fn row_light(&self, row: &TableRow, between: &BetweenAzimuths) -> RowLight<N> {
         let (air, diffuse, rays) = (&self.air, self.diffuse.as_ref(), row.bundle.len());
         let grid = diffuse.map(|d| &d.field.grid);
         let degree = diffuse.map_or(0, |d| d.field.basis.degree());
         let dimming = self.dimming();
-        let marcher = Tracer::marcher(air);
+        let marcher = Tracer::marcher_along_ray(air);
         let path = Path::new(dimming, grid, &marcher, row.start, degree);
-        let (all, few) = (&row.bundle, &row.bundle.every_second());
+        let (all, few) = (&row.bundle, &row.bundle.evenly_spaced(between.few()));
         // Where the sun lights the whole path, and after the first scattering, light changes slowly with the azimuth.
         let mut streams = Vec::new();
         let is_lit = path.has_sun_above_horizon(all, 0..rays);
@@ -428,7 +406,7 @@ impl<const N: usize> Solved<N> {
         if is_lit {
             streams = streams
                 .chunks_exact(few.len())
-                .flat_map(|light| with_halfway_rays(light, rays))
+                .flat_map(|light| between.of(light))
                 .collect();
         }
         let mut multiple = vec![Spectrum::ZERO; few.len()];
@@ -440,7 +418,7 @@ impl<const N: usize> Solved<N> {
         path.accumulate_ground(air, few, irradiance, &mut multiple);
         let mut light = RowLight {
             streams,
-            multiple_scatter: with_halfway_rays(&multiple, rays),
+            multiple_scatter: between.of(&multiple).collect(),
         };
         for (s, sums) in air
             .scatterers
@@ -456,8 +434,8 @@ impl<const N: usize> Solved<N> {
 
     /// Mean of the light of a row over the azimuth.
     #[inline(always)]
-    fn row_mean(&self, row: &TableRow, ring: &Ring) -> Spectrum<N> {
-        let light = self.row_light(row);
+    fn row_mean(&self, row: &TableRow, between: &BetweenAzimuths, ring: &Ring) -> Spectrum<N> {
+        let light = self.row_light(row, between);
         let nus = &row.bundle.nu;
         let last = nus.len() - 1;
         let steps = ring.steps(last);

@@ -51,14 +51,15 @@ impl RadialStencil {
 }
 
 impl FieldGrid {
-    /// Grid with at least `altitudes` radii, denser where the scatterers are, and the given zenith angles of the sun (degrees,
-    /// increasing). Radii are added at kinks of the densities and in optically thick air.
+    /// Grid with at least `altitudes` radii, denser where the scatterers are and at the ground, and the given zenith angles of the sun
+    /// (degrees, increasing). Radii are added at kinks of the densities and in optically thick air.
     pub fn new<const N: usize>(air: &Air<N>, altitudes: usize, sun_zeniths_deg: &[f64]) -> Self {
         let shell = air.shell();
         let inside = |r: &f64| *r > shell.ground_radius_m && *r < shell.top_radius_m;
         let kinks: Vec<f64> = shell.kink_radii_m.iter().copied().filter(inside).collect();
         let mut radii_m = radii_m(air, altitudes.max(4));
         insert_kinks(&mut radii_m, &kinks);
+        divide_lowest(shell, &mut radii_m);
         let radii_m = resolve_depth(air, &radii_m);
         let sun_cosines = sun_zeniths_deg
             .iter()
@@ -196,6 +197,13 @@ fn insert_kinks(radii_m: &mut Vec<f64>, kinks: &[f64]) {
             radii_m.insert(above, kink);
         }
     }
+}
+
+/// Divides the interval at the ground in the middle of its coordinate. Light changes fastest there, and a view along the horizon sees
+/// nothing else.
+fn divide_lowest(shell: &Shell, radii_m: &mut Vec<f64>) {
+    let coordinate = shell.altitude_coordinate(radii_m[1]);
+    radii_m.insert(1, shell.radius_of_coordinate(0.5 * coordinate));
 }
 
 /// Halves intervals between radii that are optically thick, in the lane with the most extinction: the light changes fastest

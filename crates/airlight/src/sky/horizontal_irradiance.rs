@@ -1,5 +1,6 @@
 //! Irradiance of horizontal surfaces at the eye.
 
+use super::between_azimuths::BetweenAzimuths;
 use super::block::TableRow;
 use super::view::View;
 use crate::axes;
@@ -35,6 +36,7 @@ impl View {
         /// Number of elevations on each side of the sun, and of steps from the sun's azimuth to the opposite one.
         const NODES: usize = 16;
         const STEPS: usize = 64;
+        let between = BetweenAzimuths::halfway(STEPS);
         let sun_rad = axes::elevation_rad(self.sun());
         let rings = spans.iter().map(|&span| rings(span, sun_rad, NODES));
         let rings: Vec<_> = rings.flatten().collect();
@@ -44,7 +46,7 @@ impl View {
             let row = TableRow::new(self, ring.elevation_rad, &azimuths_rad);
             let projected = (ring.solid_angle * ring.elevation_rad.sin().abs()) as f32;
             let blocks = self.sky().blocks().iter();
-            let light = blocks.flat_map(|block| block.mean_over_azimuth(&row, ring));
+            let light = blocks.flat_map(|block| block.mean_over_azimuth(&row, &between, ring));
             light.map(|mean| mean * projected).collect::<Vec<f32>>()
         });
         let mut irradiance = self.solar_irradiance();

@@ -28,6 +28,7 @@
 mod air;
 mod along_row;
 mod batch;
+mod between_azimuths;
 mod block;
 mod coverage;
 mod damping;

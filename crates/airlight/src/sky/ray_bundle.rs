@@ -174,12 +174,13 @@ impl RayBundle {
         self.nu.push(nu);
     }
 
-    /// The first, third, fifth and further rays.
-    pub fn every_second(&self) -> Self {
-        let every_second = |all: &[f64]| all.iter().copied().step_by(2).collect();
+    /// `count` evenly spaced rays, from the first to the last.
+    pub fn evenly_spaced(&self, count: usize) -> Self {
+        let stride = (self.len() - 1) / (count - 1);
+        let some = |all: &[f64]| all.iter().copied().step_by(stride).collect();
         Self {
-            mu_sun: every_second(&self.mu_sun),
-            nu: every_second(&self.nu),
+            mu_sun: some(&self.mu_sun),
+            nu: some(&self.nu),
         }
     }
 

@@ -16,7 +16,6 @@ use super::field::ground_irradiance;
 use super::ray_bundle::{Path, RayBundle, Scratch};
 use super::trace::{Arriving, Tracer};
 use crate::spectrum::Spectrum;
-use crate::transfer::march::Marcher;
 use crate::transfer::residual::{STREAMS, scattered_into_peaks};
 use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent};
 
@@ -31,9 +30,6 @@ pub struct RaySample<const N: usize> {
     pub multiple_scatter: Spectrum<N>,
 }
 
-/// Number of quadrature nodes in a panel: panels between samples are short.
-const NODES: usize = 3;
-
 impl<const N: usize> Tracer<'_, N> {
     /// Light from the eye to each of the increasing distances `samples_m`, which are clamped to the end of the rays, along each ray of a
     /// bundle with this start (radius, m, and cosine of the zenith angle), and last the light of the whole ray with its ground:
@@ -46,12 +42,7 @@ impl<const N: usize> Tracer<'_, N> {
         samples_m: &[f64],
     ) -> Vec<Vec<RaySample<N>>> {
         let (air, dimming) = (self.air, self.dimming);
-        let marcher = Marcher::new(
-            &air.panel_radii_m,
-            NODES,
-            2.0,
-            air.coefficients.max_extinction_per_m(),
-        );
+        let marcher = Self::marcher_between_distances(air);
         let field = self.diffuse.map(|diffuse| &diffuse.field);
         let pieces = Path::pieces(
             dimming,

@@ -89,12 +89,12 @@ impl Default for SkySettings {
                 rescattered_degree: 6,
                 first: Directions {
                     zenith_nodes: [8, 7, 8],
-                    azimuths: 12,
+                    azimuths: 10,
                     panel_nodes: 2,
                 },
                 later: Directions {
                     zenith_nodes: [5, 5, 6],
-                    azimuths: 8,
+                    azimuths: 7,
                     panel_nodes: 2,
                 },
                 tolerance: 0.002,
@@ -114,6 +114,7 @@ impl SkySettings {
         };
         let orders = &mut settings.orders;
         (orders.degree, orders.peak_degree, orders.rescattered_degree) = (12, 12, 8);
+        orders.first.azimuths = 12;
         orders.later.zenith_nodes = [8, 8, 10];
         orders.later.azimuths = 11;
         (orders.first.panel_nodes, orders.later.panel_nodes) = (3, 3);

@@ -195,11 +195,13 @@ mod tests {
             at,
         };
         let control = Control::cancelled_by(&recorder.cancel).reporting_to(&recorder);
-        let settings = SkySettings {
+        let mut settings = SkySettings {
             suns: SunCoverage::near(20.0, 0.0),
             altitudes: 6,
             ..Default::default()
         };
+        // So that it takes several iterations.
+        settings.orders.tolerance = 1e-5;
         let nm = (0..20).map(|k| 400.0 + 15.0 * f64::from(k)).collect();
         let grid = WavelengthGrid::from_wavelengths_nm(nm).unwrap();
         let sky = Sky::prepare_with(&reference::earth_demo(), &grid, &settings, control);

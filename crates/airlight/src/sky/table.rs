@@ -30,7 +30,7 @@ pub enum TableChannels {
 }
 
 /// Number of azimuth steps from that of the sun to the opposite one.
-pub(super) const AZIMUTHS: usize = 63;
+pub(super) const AZIMUTHS: usize = 64;
 /// Number of steps between rows from the horizon to the zenith.
 pub(super) const STEPS_ABOVE: usize = 4 * TableCoordinates::ROW_STEPS;
 /// Number of steps between rows from the horizon to the nadir.

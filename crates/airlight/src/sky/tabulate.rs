@@ -1,5 +1,6 @@
 //! Computation of a view's table.
 
+use super::between_azimuths::BetweenAzimuths;
 use super::block::{ChannelMatrix, TableRow};
 use super::peaked::{Peaked, Scattered};
 use super::ray_bundle::RayBundle;
@@ -8,6 +9,7 @@ use super::table::{
 };
 use super::view::View;
 use crate::atmosphere::Constituent;
+use crate::axes;
 use crate::control::{Cancelled, Control};
 use crate::spectrum::{WavelengthGrid, rgb};
 use glam::DVec3;
@@ -45,6 +47,7 @@ impl SkyTable {
         let width = peaked.width * (1 + peaked.parts.len());
         let azimuth_rad = |k| PI * coordinates.azimuth(k as f64 / AZIMUTHS as f64);
         let azimuths_rad: Vec<f64> = (0..=AZIMUTHS).map(azimuth_rad).collect();
+        let between = between_azimuths(view);
         let mut values = Vec::new();
         let mut band = |places: [f64; 2], steps: usize, is_below: bool| {
             let first = values.len() / (AZIMUTHS + 1) / width;
@@ -58,7 +61,14 @@ impl SkyTable {
             let table_rows: Vec<TableRow> = elevations.map(row).collect();
             let mut filled = vec![0.0; rows * (AZIMUTHS + 1) * width];
             for (block, matrix) in sky.blocks().iter().zip(&matrices) {
-                block.fill(&table_rows, matrix, &peaked, width, &mut filled, control)?;
+                block.fill(
+                    (&table_rows, &between),
+                    matrix,
+                    &peaked,
+                    width,
+                    &mut filled,
+                    control,
+                )?;
             }
             values.append(&mut filled);
             Ok(Band::new(places, first, steps))
@@ -91,6 +101,18 @@ impl SkyTable {
             values: with_mirrored_columns(&values, width),
             peaked,
         })
+    }
+}
+
+/// Interpolation of light that varies slowly with the azimuth: in daylight it varies by little, in twilight and from space by orders of
+/// magnitude.
+fn between_azimuths(view: &View) -> BetweenAzimuths {
+    /// Elevation of the sun from which it is day, degrees.
+    const DAY_DEG: f64 = 2.0;
+    let is_uneven = view.table_coordinates().dense_share > 0.0;
+    match axes::elevation_deg(view.sun()) >= DAY_DEG && !is_uneven {
+        true => BetweenAzimuths::ends(AZIMUTHS, 4),
+        false => BetweenAzimuths::halfway(AZIMUTHS),
     }
 }
 

@@ -78,15 +78,27 @@ impl<'a, const N: usize> Tracer<'a, N> {
             air,
             dimming: diffuse.map_or(air, |d| &d.air),
             diffuse,
-            marcher: Self::marcher(air),
+            marcher: Self::marcher_along_ray(air),
             edges: Vec::new(),
         }
     }
 
-    /// Marcher with the step size for full accuracy.
-    pub fn marcher(air: &'a Air<N>) -> Marcher<'a> {
+    /// Marcher along whole rays, for full accuracy.
+    pub fn marcher_along_ray(air: &'a Air<N>) -> Marcher<'a> {
+        Self::marcher(air, 4)
+    }
+
+    /// Marcher along rays that are divided at many distances: panels between them are short.
+    pub fn marcher_between_distances(air: &'a Air<N>) -> Marcher<'a> {
+        Self::marcher(air, 3)
+    }
+
+    /// Marcher with a number of nodes in each panel.
+    fn marcher(air: &'a Air<N>, nodes: usize) -> Marcher<'a> {
+        /// Largest optical depth of a panel.
+        const DEPTH: f64 = 2.0;
         let extinction = air.coefficients.max_extinction_per_m();
-        Marcher::new(&air.panel_radii_m, 4, 2.0, extinction)
+        Marcher::new(&air.panel_radii_m, nodes, DEPTH, extinction)
     }
 
     /// Light along `ray`, over at most `limit_m`.

@@ -4,6 +4,7 @@
 //! angles, azimuths and iterations.
 
 use super::air::Air;
+use super::between_azimuths::BetweenAzimuths;
 use super::field::{FieldGrid, RadianceField};
 use super::harmonics::Harmonics;
 use super::horizon::{self, ByDirection, MODES};
@@ -31,10 +32,10 @@ pub struct Transport<'a, const N: usize> {
     paths: Vec<Vec<(Path<N>, f64)>>,
     marcher: Marcher<'a>,
     azimuth_cosines: Vec<f64>,
-    /// Half as many, and their weights at each of the azimuths.
+    /// Half as many, and the interpolation between them.
     few_azimuth_cosines: Vec<f64>,
-    between_few_azimuths: Vec<Vec<f32>>,
-    /// Cosines of the multiples of each azimuth, at least [`MODES`].
+    between_few_azimuths: BetweenAzimuths,
+    /// Cosines of the multiples of each azimuth, at least [`MODES`], without multiples that so many azimuths do not resolve.
     azimuth_modes: Vec<Vec<f32>>,
     /// Whether scattering polarises the light.
     polarised: bool,
@@ -73,7 +74,7 @@ impl<'a, const N: usize> Transport<'a, N> {
             ))
         })?;
         let (many, few) = (directions.azimuths, directions.azimuths.div_ceil(2));
-        let modes = MODES.max(basis.degree() + 1);
+        let modes = MODES.max(basis.degree() + 1).min(many);
         let multiples = |azimuth: f64| {
             let cosine = |m: usize| (m as f64 * azimuth).cos() as f32;
             (0..modes).map(cosine).collect()
@@ -87,7 +88,7 @@ impl<'a, const N: usize> Transport<'a, N> {
             marcher,
             azimuth_cosines: azimuths(many).map(f64::cos).collect(),
             few_azimuth_cosines: azimuths(few).map(f64::cos).collect(),
-            between_few_azimuths: between_azimuths(few, many),
+            between_few_azimuths: BetweenAzimuths::middles(few, many),
             azimuth_modes: azimuths(many).map(multiples).collect(),
             polarised,
             control,
@@ -175,13 +176,7 @@ impl<'a, const N: usize> Transport<'a, N> {
             for &is_lit in &is_lit {
                 if is_lit {
                     let light = lit_light.next().expect("a sun in light");
-                    for weights in &self.between_few_azimuths {
-                        let mut sum = Spectrum::ZERO;
-                        for (light, weight) in light.iter().zip(weights) {
-                            sum = sum.scale_acc(*light, *weight);
-                        }
-                        out.push(sum.max_scalar(0.0));
-                    }
+                    out.extend(self.between_few_azimuths.of(light));
                 } else {
                     out.extend_from_slice(other_light.next().expect("another sun"));
                 }
@@ -402,17 +397,6 @@ fn bundle_of(
 /// Azimuths from that of the sun to the opposite one, in the middle of equal intervals.
 fn azimuths(count: usize) -> impl Iterator<Item = f64> + Clone {
     (0..count).map(move |k| PI * (k as f64 + 0.5) / count as f64)
-}
-
-/// Weights of values at `few` azimuths in the value at each of `many`, exact for the first modes.
-fn between_azimuths(few: usize, many: usize) -> Vec<Vec<f32>> {
-    let weight = |to: f64, from: f64| {
-        let modes = (1..few).map(|m| (m as f64 * to).cos() * (m as f64 * from).cos());
-        ((1.0 + 2.0 * modes.sum::<f64>()) / few as f64) as f32
-    };
-    azimuths(many)
-        .map(|to| azimuths(few).map(|from| weight(to, from)).collect())
-        .collect()
 }
 
 /// Reused buffers for the rays of one radius.
