@@ -40,12 +40,28 @@ pub fn pictures(count: usize) -> &'static str {
 /// # Errors
 /// [`CliError`] if the file cannot be written.
 pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), CliError> {
+    write_together([(path, content)])
+}
+
+/// Writes texts or bytes to files that belong together, which are renamed into place when all of them are complete.
+///
+/// # Errors
+/// [`CliError`] if one of the files cannot be written.
+pub fn write_together<P: AsRef<Path>, C: AsRef<[u8]>>(
+    files: impl IntoIterator<Item = (P, C)>,
+) -> Result<(), CliError> {
     let _writing = interrupt::start_writing()?;
-    let file = AtomicFile::create(path)?;
-    file.file().write_all(content.as_ref()).map_err(|error| {
-        CliError::failure(format!("cannot write `{}`: {error}", path.display()))
-    })?;
-    Ok(file.commit()?)
+    let complete = |(path, content): (P, C)| {
+        let path = path.as_ref();
+        let file = AtomicFile::create(path)?;
+        file.file().write_all(content.as_ref()).map_err(|error| {
+            CliError::failure(format!("cannot write `{}`: {error}", path.display()))
+        })?;
+        Ok(file)
+    };
+    let files = files.into_iter().map(complete);
+    let files: Vec<AtomicFile> = files.collect::<Result<_, CliError>>()?;
+    files.into_iter().try_for_each(|file| Ok(file.commit()?))
 }
 
 /// Writes a job for a render farm, and says so.

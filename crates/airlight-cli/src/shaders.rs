@@ -16,9 +16,14 @@ pub fn run(args: &ShadersArgs) -> Result<(), CliError> {
         false => &args.only,
     };
     let files = translated_files(parts, args.lang).map_err(|e| CliError::failure(e.to_string()))?;
-    std::fs::create_dir_all(&args.output).map_err(|error| {
-        CliError::failure(format!("cannot write `{}`: {error}", args.output.display()))
-    })?;
-    let mut files = files.into_iter();
-    files.try_for_each(|file| report::write(&args.output.join(file.name), file.contents))
+    let folder = args.output.display();
+    if args.output.is_file() {
+        let sentence =
+            format!("expected a folder, got the file `{folder}`; try `{folder}-shaders`");
+        return Err(CliError::failure(sentence));
+    }
+    std::fs::create_dir_all(&args.output)
+        .map_err(|error| CliError::failure(format!("cannot write `{folder}`: {error}")))?;
+    let files = files.into_iter();
+    report::write_together(files.map(|file| (args.output.join(file.name), file.contents)))
 }

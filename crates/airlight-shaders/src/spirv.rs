@@ -31,13 +31,16 @@ impl SpirvModule {
     }
 }
 
-/// Modules of parts: for each a [`ComputeShader`], and the passes whose subject it is. Functions alone have no form that Vulkan takes.
+/// Modules of parts: once for each a [`ComputeShader`], and the passes whose subject it is. Functions alone have no form that Vulkan takes.
 ///
 /// # Errors
 /// [`TranslateError`] with what the translator reports.
 pub fn spirv_modules(parts: &[Part]) -> Result<Vec<SpirvModule>, TranslateError> {
     let mut modules = Vec::new();
-    for &part in parts {
+    for (index, &part) in parts.iter().enumerate() {
+        if parts[..index].contains(&part) {
+            continue;
+        }
         modules.push(compute_module(part)?);
         let passes = Pass::ALL.iter().filter(|pass| pass.parts()[0] == part);
         for &pass in passes {

@@ -84,6 +84,7 @@ fn each_part_has_its_module_and_its_passes() {
 #[test]
 fn interfaces_name_what_a_program_binds() {
     let modules = spirv_modules(&[Part::Fog]).unwrap();
+    assert_eq!(spirv_modules(&[Part::Fog, Part::Fog]).unwrap(), modules);
     let [functions, pass] = [&modules[0], &modules[1]].map(|module| module.interface.as_str());
     for line in [
         "exponential_fog (compute, 64 x 1 x 1) 18 -> 6: fn exponential_fog(",

@@ -290,6 +290,8 @@ fn bad_use_of_sky() {
         ("atmospheres claer", "\"clear\""),
         ("shaders --lang glsl -o shaders", "glsl450"),
         ("shaders --only fogs -o shaders", "'fog'"),
+        ("shaders --only fog,,disc -o shaders", "a value is required"),
+        ("accuracy random-air", "'random-airs'"),
         ("shaders", "--output"),
     ] {
         refused(&folder, words, 2, part);
@@ -300,6 +302,8 @@ fn bad_use_of_sky() {
 fn failures() {
     let folder = Folder::new();
     std::fs::create_dir(folder.file("dir.exr")).unwrap();
+    std::fs::write(folder.file("a.txt"), "").unwrap();
+    std::fs::create_dir_all(folder.file("part/airlight-fog-pass.txt")).unwrap();
     for (words, part) in [
         (
             format!("sky {SUN} -o missing/a.exr"),
@@ -315,9 +319,20 @@ fn failures() {
             "cannot read",
         ),
         ("sky --scene none.toml -o a.exr".to_owned(), "cannot read"),
+        (
+            "shaders --lang spirv -o a.txt".to_owned(),
+            "expected a folder, got the file `a.txt`",
+        ),
+        (
+            "shaders --lang spirv --only fog -o part".to_owned(),
+            "cannot write `part/airlight-fog-pass.txt`: it is a folder",
+        ),
     ] {
         refused(&folder, &words, 1, part);
     }
+    // The modules belong together.
+    let left = std::fs::read_dir(folder.file("part")).unwrap();
+    assert_eq!(left.count(), 1);
 }
 
 #[cfg(unix)]
@@ -392,7 +407,7 @@ fn help_and_lists_name_what_there_is() {
     );
     let glsl = std::fs::read_to_string(folder.file("web/shaders/airlight.glsl")).unwrap();
     assert!(glsl.contains("float henyey_greenstein(") && !glsl.contains("uniform_fog"));
-    succeed(&folder, "shaders --lang spirv --only fog -o vulkan");
+    succeed(&folder, "shaders --lang spirv --only fog,fog -o vulkan");
     let mut names: Vec<_> = std::fs::read_dir(folder.file("vulkan"))
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
