@@ -71,6 +71,14 @@ pub enum SkyRendererError {
     /// The height of the eye is not a number.
     #[error("expected a finite height of the eye, got {0} m")]
     Height(f64),
+    /// A number of the sun, or of the moon, is out of range.
+    #[error("expected {expected} of the sun or the moon, got {got}")]
+    Source {
+        /// The number and its range.
+        expected: &'static str,
+        /// What it is.
+        got: f64,
+    },
     /// The direction to the sun, or to the moon, has no length.
     #[error("expected a direction to the sun or the moon, got {0}")]
     Sun(airlight::glam::DVec3),

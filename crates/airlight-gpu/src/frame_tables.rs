@@ -13,6 +13,7 @@ use airlight_shaders::twins::colour::rgb_from_spectrum;
 use airlight_shaders::{ColourFit, SingleScatteringTable, SkyTables, wavelength_grid};
 use glam::{Vec3, Vec4};
 use std::collections::VecDeque;
+use std::f64::consts::PI;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// A solved sky that fills the tables of frames. It needs no device, so that a thread or a worker of a web page can hold it. Cloning is
@@ -314,14 +315,29 @@ fn ground_share(fog: &RgbFog) -> Vec4 {
     Vec4::new(blue, 0.5 * (blue + green), green, red)
 }
 
-/// Refuses a height that is not a number, and a source without a direction.
+/// Refuses a height that is not a number, and a source without a direction or with numbers out of range.
 pub(crate) fn check(height_m: f64, source: &LightSource) -> Result<(), SkyRendererError> {
     if !height_m.is_finite() {
         return Err(SkyRendererError::Height(height_m));
     }
-    let direction = source.direction();
-    match direction.try_normalize() {
-        Some(_) => Ok(()),
-        None => Err(SkyRendererError::Sun(direction)),
+    let (distances, phase_rad, to_sun) = match source {
+        LightSource::Moon(moon) => {
+            let distances = [moon.distance_m, moon.sun_distance_m];
+            (distances, moon.phase_angle_rad, moon.to_sun)
+        }
+        LightSource::Sun(sun) => ([sun.distance_ratio; 2], 0.0, DVec3::Y),
+        _ => ([1.0; 2], 0.0, DVec3::Y),
+    };
+    for direction in [source.direction(), to_sun] {
+        if direction.try_normalize().is_none() {
+            return Err(SkyRendererError::Sun(direction));
+        }
+    }
+    let refuse = |expected, got| Err(SkyRendererError::Source { expected, got });
+    let is_wrong = |distance: &f64| !(*distance > 0.0 && distance.is_finite());
+    match distances.into_iter().find(is_wrong) {
+        Some(wrong) => refuse("a finite distance above 0", wrong),
+        None if !(0.0..=PI).contains(&phase_rad) => refuse("a phase angle from 0 to pi", phase_rad),
+        None => Ok(()),
     }
 }

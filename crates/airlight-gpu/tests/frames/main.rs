@@ -17,9 +17,11 @@ use airlight::fog::lights::{
     Light, LightSettings, PointLight, RgbLightSet, SphereLight, SpotLight, ViewRay,
 };
 use airlight::fog::{DirectionalLight, FogLighting, FogScattering, Ground, RgbFog, RgbLayer};
+use airlight::night::MoonState;
 use airlight::optics::PhaseFunction;
 use airlight::sky::{LightSource, Sky, SkySettings, SunCoverage, TableChannels, View};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
+use airlight::sun::SunState;
 use airlight::transfer::medium_evaluations;
 use airlight_gpu::headless::{FORMAT, Frame, Geometry, Headless};
 use airlight_gpu::{
@@ -555,10 +557,76 @@ fn wrong_inputs_are_errors() {
     assert!(matches!(error, SkyRendererError::Format(_)), "{error}");
     let mut renderer = renderer(&gpu, Preset::Clear, 30.0, 2.0);
     let up = DVec3::Y;
-    assert!(matches!(
-        renderer.update(f64::NAN, up),
-        Err(SkyRendererError::Height(_))
-    ));
+    for height_m in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        assert!(matches!(
+            renderer.update(height_m, up),
+            Err(SkyRendererError::Height(_))
+        ));
+        assert!(matches!(
+            renderer.update_in_background(height_m, up),
+            Err(SkyRendererError::Height(_))
+        ));
+    }
+    let sun = SunState::from(axes::direction(140.0, 30.0));
+    for distance_ratio in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
+        let sun = sun.at_distance_ratio(distance_ratio);
+        let refused = renderer.update(2.0, sun);
+        assert!(matches!(refused, Err(SkyRendererError::Source { .. })));
+        let refused = renderer.set_second_source(Some(sun.into()));
+        assert!(matches!(refused, Err(SkyRendererError::Source { .. })));
+    }
+    let moon = MoonState::lit_by(axes::direction(20.0, 35.0), sun.direction);
+    let spoil: [fn(&mut MoonState); 3] = [
+        |moon| moon.distance_m = f64::NAN,
+        |moon| moon.sun_distance_m = -1.0,
+        |moon| moon.phase_angle_rad = 4.0,
+    ];
+    for spoil in spoil {
+        let mut wrong = moon;
+        spoil(&mut wrong);
+        let refused = renderer.set_second_source(Some(wrong.into()));
+        assert!(matches!(refused, Err(SkyRendererError::Source { .. })));
+    }
+    for wrong in [f32::NAN, f32::INFINITY, -0.1] {
+        let mut fogs = [valley_fog(), valley_fog(), valley_fog()];
+        fogs[0].layers[0].extinction_per_m[1] = wrong;
+        fogs[1].layers[0].single_scattering_albedo[2] = wrong;
+        fogs[2].ground_albedo[0] = wrong;
+        for fog in fogs {
+            let refused = renderer.set_fog(Some(fog));
+            assert!(matches!(refused, Err(SkyRendererError::Fog(_))), "{wrong}");
+        }
+    }
+    for ground_height_m in [f64::NAN, f64::INFINITY] {
+        let fog = Fog {
+            ground_height_m,
+            ..valley_fog()
+        };
+        let refused = renderer.set_fog(Some(fog));
+        assert!(matches!(refused, Err(SkyRendererError::Fog(_))));
+    }
+    for visibility_m in [f64::NAN, 0.0, -300.0] {
+        let refused = renderer.set_fog(Some(Fog::new(visibility_m, 20.0)));
+        assert!(
+            matches!(refused, Err(SkyRendererError::Fog(_))),
+            "{visibility_m}"
+        );
+    }
+    // Air that cannot be solved for is refused in the background, too, and frames go on in the air before.
+    let mut wrong_air = air.clone();
+    wrong_air.planet.radius_m = f64::NAN;
+    let refused = renderer.set_atmosphere(&wrong_air);
+    assert!(matches!(refused, Err(SkyRendererError::Sky(_))));
+    renderer.set_atmosphere_in_background(&wrong_air).unwrap();
+    let refused = loop {
+        match renderer.update_in_background(2.0, up) {
+            Ok(_) => std::thread::yield_now(),
+            Err(error) => break error,
+        }
+    };
+    assert!(matches!(refused, SkyRendererError::Sky(_)), "{refused}");
+    renderer.update(2.0, up).unwrap();
+    assert_eq!(*renderer.sky().atmosphere(), air);
     let mut fog = valley_fog();
     for density in [DensityProfile::StandardAir1976, DensityProfile::Uniform] {
         fog.layers[0].density = density;
