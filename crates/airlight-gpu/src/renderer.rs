@@ -23,7 +23,7 @@ pub struct SkyRendererSettings {
     pub target_format: wgpu::TextureFormat,
     /// RGB space of the target.
     pub space: RgbSpace,
-    /// Settings of the solver. With the default suns it solves once for all suns and heights.
+    /// Settings of the solver: [`SkySolver::default_settings`] unless set. With the default suns it solves once for all suns and heights.
     pub solver: SkySettings,
     /// Whether tables hold what shadows in the air need: [`SkyRenderer::record_shadowed`].
     pub shadows: bool,
@@ -35,7 +35,7 @@ impl SkyRendererSettings {
         Self {
             target_format,
             space: RgbSpace::Srgb,
-            solver: SkySettings::default(),
+            solver: SkySolver::default_settings(),
             shadows: false,
         }
     }

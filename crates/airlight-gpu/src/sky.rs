@@ -61,6 +61,10 @@ fn numbers(source: &SourceTables, scales: SkyScales) -> Vec<f32> {
         tables.view.dense_width,
         tables.view.even_below,
         tables.view.jump_height_m,
+        tables.view.jump_place,
+        tables.view.level_step,
+        0.0,
+        0.0,
         0.0,
     ]);
     all.extend(tables.view.extinction_above.to_array());

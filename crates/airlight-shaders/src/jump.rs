@@ -31,25 +31,30 @@ impl Jump {
     /// Largest ratio, and the inverse of the smallest.
     const MOST: f32 = 1e4;
 
-    /// The jump that is nearest to the eye of a view; none for an eye deep below it, which sees it from the side of the ground alone.
+    /// The jump that is nearest to the eye of a view. From deep below, light is relative to the extinction alone.
     pub fn nearest(split: &SplitView, coordinates: &TableCoordinates) -> Self {
-        /// Distance below a jump from which on tables without it are as good, m.
+        /// Distance below a jump from which on the source function hardly changes where a ray leaves the layer, m.
         const DEEP_M: f64 = 1.5e3;
         let (ground_radius_m, _) = split.view().bounds_m();
         let eye_m = split.view().radius_m() - ground_radius_m;
-        let Some(height_m) = coordinates.jump_height_m.filter(|m| m - eye_m < DEEP_M) else {
+        let Some(height_m) = coordinates.jump_height_m else {
             return Self::NONE;
         };
         let air = split.view().sky().atmosphere();
         let altitude_m = air.planet.ground_altitude_m + height_m;
-        let is_haze = |kind: &ConstituentKind| {
-            !matches!(kind, ConstituentKind::Molecules | ConstituentKind::Ozone)
+        let extinction = across(altitude_m, |m, nm| air.extinction_per_m(m, nm));
+        let [smooth, haze] = match height_m - eye_m < DEEP_M {
+            true => [
+                smooth(split, coordinates.horizon_rad, height_m),
+                across(altitude_m, |m, nm| haze_scattering_per_m(air, m, nm)),
+            ],
+            false => [extinction; 2],
         };
         Self {
             height_m: height_m as f32,
-            extinction: across(altitude_m, |m, nm| air.extinction_per_m(m, nm)),
-            smooth: smooth(split, coordinates.horizon_rad, height_m),
-            haze: across(altitude_m, |m, nm| scattering_per_m(air, is_haze, m, nm)),
+            extinction,
+            smooth,
+            haze,
         }
     }
 
@@ -59,14 +64,12 @@ impl Jump {
     }
 }
 
-/// Scattering coefficient of constituents of some kinds at an altitude (m) and a wavelength (nm), 1/m.
-fn scattering_per_m(
-    air: &Atmosphere,
-    is_meant: impl Fn(&ConstituentKind) -> bool,
-    altitude_m: f64,
-    wavelength_nm: f64,
-) -> f64 {
-    let parts = air.constituents.iter().filter(|part| is_meant(&part.kind));
+/// Scattering coefficient of haze at an altitude (m) and a wavelength (nm), 1/m.
+fn haze_scattering_per_m(air: &Atmosphere, altitude_m: f64, wavelength_nm: f64) -> f64 {
+    let is_haze = |kind: &ConstituentKind| {
+        !matches!(kind, ConstituentKind::Molecules | ConstituentKind::Ozone)
+    };
+    let parts = air.constituents.iter().filter(|part| is_haze(&part.kind));
     parts
         .map(|part| part.density.at(altitude_m) * part.scattering_per_m.at(wavelength_nm))
         .sum()

@@ -210,7 +210,7 @@ impl SingleScatteringTable {
 /// What the shader functions know of a view.
 fn sky_view(view: &View, coordinates: &TableCoordinates, jump: &Jump) -> twin::SkyView {
     let (ground_radius_m, top_radius_m) = view.bounds_m();
-    twin::SkyView {
+    with_place_of_jump(twin::SkyView {
         sun: view.sun().as_vec3(),
         height_m: (view.radius_m() - ground_radius_m) as f32,
         ground_radius_m: ground_radius_m as f32,
@@ -224,9 +224,42 @@ fn sky_view(view: &View, coordinates: &TableCoordinates, jump: &Jump) -> twin::S
         dense_width: coordinates.dense_width as f32,
         even_below: coordinates.even_below as f32,
         jump_height_m: jump.height_m,
+        jump_place: 0.0,
+        level_step: 0.0,
         extinction_above: jump.extinction,
         smooth_above: jump.smooth,
         haze_above: jump.haze,
+    })
+}
+
+/// The view with the place of its jump among the distances: the nearest whole one before that which the crossing has among distances dense at
+/// the eye, along the ray that grazes the jump, or from below along the level one.
+fn with_place_of_jump(view: twin::SkyView) -> twin::SkyView {
+    /// Height of the eye over or below a jump up to which distances that are dense at the eye resolve the crossings of steep rays, and
+    /// others would not, m.
+    const NEAR_M: f32 = 600.0;
+    let over_jump = (view.height_m - view.jump_height_m)
+        * (2.0 * view.ground_radius_m + view.height_m + view.jump_height_m);
+    let distance_m = (view.height_m - view.jump_height_m).abs();
+    if view.jump_height_m <= 0.0 || distance_m < NEAR_M || view.height_m >= view.air_height_m {
+        return view;
+    }
+    let crossing_m = over_jump.abs().sqrt();
+    let sine = match over_jump > 0.0 {
+        true => -crossing_m / (view.ground_radius_m + view.height_m),
+        false => 0.0,
+    };
+    let part = crossing_m / twin::air_span_m(view, sine, false).y;
+    let steps = twin::AERIAL_DISTANCES - 1.0;
+    let place = (steps * part.sqrt()).floor() / steps;
+    match place > 0.0 {
+        true => twin::SkyView {
+            jump_place: place,
+            // Of distances that have this one at the crossing.
+            level_step: (part - place * place) / (place - place * place),
+            ..view
+        },
+        false => view,
     }
 }
 
@@ -254,17 +287,15 @@ impl Eye {
         (self.coordinates.elevation_rad(place, is_below), is_below)
     }
 
-    /// Unit vector of a column and an elevation.
-    fn direction(&self, column: usize, columns: usize, elevation: f64) -> DVec3 {
+    /// Unit vector at a place among the columns of a sky table and at an elevation.
+    fn direction(&self, column_place: f64, elevation: f64) -> DVec3 {
         let towards = DVec3::new(self.sun.x, 0.0, self.sun.z);
         let towards = match self.sun.x.abs() + self.sun.z.abs() < 1e-9 {
             true => DVec3::X,
             false => towards.normalize(),
         };
         let across = DVec3::new(-towards.z, 0.0, towards.x);
-        let azimuth = self
-            .coordinates
-            .azimuth(column as f64 / (columns - 1) as f64);
+        let azimuth = self.coordinates.azimuth(column_place);
         let (sin, cos) = (PI * azimuth).sin_cos();
         (towards * cos + across * sin) * elevation.cos() + DVec3::Y * elevation.sin()
     }
@@ -296,7 +327,8 @@ fn sky(split: &SplitView, eye: &Eye) -> (Vec<Vec4>, Vec<Vec4>) {
     let mut directions = Vec::with_capacity(columns * rows);
     for row in 0..rows {
         let (elevation, _) = eye.elevation(row, SKY_ROWS);
-        directions.extend((0..columns).map(|column| eye.direction(column, columns, elevation)));
+        let places = (0..columns).map(|column| column as f64 / (columns - 1) as f64);
+        directions.extend(places.map(|place| eye.direction(place, elevation)));
     }
     let light = split.radiances(&directions);
     light
@@ -314,6 +346,16 @@ struct Aerial {
 
 fn aerial(split: &SplitView, eye: &Eye, view: &twin::SkyView) -> Aerial {
     let [columns, rows, distances] = aerial_size();
+    let column_places = (0..columns).map(|column| {
+        let place = column as f32 / (columns - 1) as f32;
+        f64::from(twin::part_from_place(place, twin::AERIAL_FIRST_COLUMN))
+    });
+    let column_places: Vec<f64> = column_places.collect();
+    // From above a jump, the distance at which rays enter the air below it: what is relative to that needs a little of it.
+    let entry = match view.height_m > view.jump_height_m {
+        true => (view.jump_place * (distances - 1) as f32).round() as usize,
+        false => 0,
+    };
     let mut rays = Vec::with_capacity(rows);
     // By row and step: the length of the ray in the air, m, and the part of it below a jump of density.
     let mut lengths_m = Vec::with_capacity(rows * distances);
@@ -322,11 +364,19 @@ fn aerial(split: &SplitView, eye: &Eye, view: &twin::SkyView) -> Aerial {
         let (elevation, is_below) = eye.elevation(row, AERIAL_ROWS);
         let sine = elevation.sin() as f32;
         let span = twin::air_span_m(*view, sine, is_below);
-        let (start_m, length_m) = (f64::from(span.x), f64::from(span.y - span.x));
-        let first_step = twin::first_step(*view, span, is_below);
+        let start_m = f64::from(span.x);
         let stops_m = (0..distances).map(|step| {
-            let place = (step as f64).max(FIRST_STEP) / (distances - 1) as f64;
-            start_m + length_m * f64::from(twin::part_from_place(place as f32, first_step))
+            let entered = f64::from(u8::from(step == entry));
+            let place =
+                (step as f64 + FIRST_STEP * entered).max(FIRST_STEP) / (distances - 1) as f64;
+            start_m
+                + f64::from(twin::length_from_distance_place(
+                    *view,
+                    span,
+                    sine,
+                    place as f32,
+                    is_below,
+                ))
         });
         let stops_m: Vec<f64> = stops_m.collect();
         for stop_m in &stops_m {
@@ -335,7 +385,8 @@ fn aerial(split: &SplitView, eye: &Eye, view: &twin::SkyView) -> Aerial {
             lengths_m.push(length_m);
             shares.push(share);
         }
-        let directions = (0..columns).map(|column| eye.direction(column, columns, elevation));
+        let directions = column_places.iter();
+        let directions = directions.map(|&place| eye.direction(place, elevation));
         rays.push((directions.collect(), stops_m));
     }
     let paths = split.many_paths(&rays);

@@ -11,14 +11,16 @@ const SKY_AZIMUTHS: f32 = 64.0;
 const SKY_ROWS_ABOVE: f32 = 125.0;
 /// Rows of a sky table from the horizon to the nadir.
 const SKY_ROWS_BELOW: f32 = 35.0;
-/// Columns of an aerial-perspective table.
+/// Columns of an aerial-perspective table, as those of a sky table but denser beside the sun.
 const AERIAL_AZIMUTHS: f32 = 32.0;
+/// Width of the first of these columns relative to even ones.
+const AERIAL_FIRST_COLUMN: f32 = 0.4;
 /// Rows of an aerial-perspective table from the horizon to the highest elevation; they come first.
 const AERIAL_ROWS_ABOVE: f32 = 32.0;
 /// Rows of an aerial-perspective table from the horizon to the nadir.
 const AERIAL_ROWS_BELOW: f32 = 32.0;
 /// Distances of an aerial-perspective table.
-const AERIAL_DISTANCES: f32 = 32.0;
+const AERIAL_DISTANCES: f32 = 40.0;
 /// Angles of a table of phase functions.
 const PHASE_ANGLES: f32 = 1024.0;
 
@@ -51,6 +53,11 @@ struct SkyView {
     even_below: f32,
     /// Height above the ground of the jump of density that is nearest to the eye, m.
     jump_height_m: f32,
+    /// Place among the distances of an aerial-perspective table at which rays that do not meet the ground first cross that jump, 0 to 1; 0
+    /// without a jump, and for an eye above the air.
+    jump_place: f32,
+    /// Length of the first step between the distances of such rays, relative to even steps, from inside the air.
+    level_step: f32,
     /// Extinction just above that jump relative to that just below it; 1 without a jump.
     extinction_above: vec4<f32>,
     /// Smooth light that a metre of air scatters just above that jump relative to one just below it; 1 without a jump.
@@ -244,15 +251,15 @@ fn air_span_m(view: SkyView, sin_elevation: f32, meets_ground: bool) -> vec2<f32
     return vec2<f32>(start, max(end, start));
 }
 
-/// Part of the way of a ray through the air, up to a length, that is below the jump of density nearest to the eye.
+/// Interval of a ray inside the air that is below the jump of density nearest to the eye, m from the eye; (0, 0) if none is.
 ///
-/// Cost: no exp. Error: 1e-3 absolute.
-fn share_below_jump(view: SkyView, span_m: vec2<f32>, sin_elevation: f32, length_m: f32, meets_ground: bool) -> f32 {
+/// Cost: no exp. Error: 3e-5 relative plus 300 absolute.
+fn below_jump_m(view: SkyView, span_m: vec2<f32>, sin_elevation: f32, meets_ground: bool) -> vec2<f32> {
     let b = (view.ground_radius_m + view.height_m) * sin_elevation;
     let over_jump = (view.height_m - view.jump_height_m) * (2.0 * view.ground_radius_m + view.height_m + view.jump_height_m);
     let squared_root = b * b - over_jump;
     if over_jump > 0.0 && (b >= 0.0 || squared_root <= 0.0) {
-        return 0.0;
+        return vec2<f32>(0.0);
     }
     let root = sqrt(max(squared_root, 0.0));
     let entry = select(0.0, over_jump / (root - b), over_jump > 0.0);
@@ -262,13 +269,21 @@ fn share_below_jump(view: SkyView, span_m: vec2<f32>, sin_elevation: f32, length
     } else if b > 0.0 {
         exit = -over_jump / (root + b);
     }
-    let below_m = min(span_m.x + length_m, exit) - max(span_m.x, entry);
+    return vec2<f32>(entry, exit);
+}
+
+/// Part of the way of a ray through the air, up to a length, that is below the jump of density nearest to the eye.
+///
+/// Cost: no exp. Error: 1e-3 absolute.
+fn share_below_jump(view: SkyView, span_m: vec2<f32>, sin_elevation: f32, length_m: f32, meets_ground: bool) -> f32 {
+    let below = below_jump_m(view, span_m, sin_elevation, meets_ground);
+    let below_m = min(span_m.x + length_m, below.y) - max(span_m.x, below.x);
     return clamp(below_m / max(length_m, 1e-6), 0.0, 1.0);
 }
 
 /// Length of the first step between the distances of a ray with an interval in the air, relative to even steps. From inside the air
-/// distances are dense near the eye, at the square of the place: 0; from above it towards the ground, where most air is, dense there: 2.
-/// Steep rays from high in the air are between.
+/// distances are dense near the eye, at the square of the place: 0, or a little more where a jump has a place among them; from above it
+/// towards the ground, where most air is, dense there: 2. Steep rays from high in the air are between.
 ///
 /// Cost: no exp. Error: 1e-5 relative plus 1e-5 absolute.
 fn first_step(view: SkyView, span_m: vec2<f32>, meets_ground: bool) -> f32 {
@@ -276,7 +291,7 @@ fn first_step(view: SkyView, span_m: vec2<f32>, meets_ground: bool) -> f32 {
         return select(1.0, 2.0, meets_ground);
     }
     if !meets_ground {
-        return 0.0;
+        return view.level_step;
     }
     let slant = 1.0 - min(view.height_m / max(span_m.y, 1.0), 1.0);
     let high = min(2.5 * view.height_m / view.air_height_m, 1.0);
@@ -299,12 +314,69 @@ fn part_from_place(place: f32, first_step: f32) -> f32 {
     return place * (first_step + (1.0 - first_step) * place);
 }
 
-/// Place from 0 to 1 of a length in the air among the distances of a ray with an interval in the air.
+/// Place from 0 to 1 of an azimuth from the sun, in half turns, among the columns of an aerial-perspective table.
 ///
-/// Cost: no exp. Error: 1e-5 relative plus 1e-5 absolute.
-fn distance_place(view: SkyView, span_m: vec2<f32>, length_m: f32, meets_ground: bool) -> f32 {
+/// Cost: no exp. Error: 1e-6 relative plus 1e-5 absolute.
+fn aerial_column_place(view: SkyView, azimuth: f32) -> f32 {
+    return place_from_part(column_place(view, azimuth), AERIAL_FIRST_COLUMN);
+}
+
+/// Part of the way of a ray through the air at which it first crosses the jump of density nearest to the eye; 0 if it does not cross it, or
+/// meets the ground.
+///
+/// Cost: no exp. Error: 1e-3 absolute.
+fn part_at_jump(view: SkyView, span_m: vec2<f32>, sin_elevation: f32, meets_ground: bool) -> f32 {
+    if view.jump_place == 0.0 || meets_ground {
+        return 0.0;
+    }
+    let below = below_jump_m(view, span_m, sin_elevation, meets_ground);
+    let crossing = select(below.y, below.x, below.x > span_m.x);
+    return clamp((crossing - span_m.x) / max(span_m.y - span_m.x, 1e-6), 0.0, 1.0);
+}
+
+/// Lengths of the first steps between the distances before and behind a jump, as `first_step`, for which the step does not change there
+/// along the ray that grazes the jump, or from below along the level one.
+///
+/// Cost: no exp. Error: 1e-6 relative.
+fn steps_at_jump(view: SkyView) -> vec2<f32> {
+    let growth = 1.0 - view.level_step;
+    let at_jump = view.level_step + 2.0 * growth * view.jump_place;
+    return vec2<f32>(
+        view.level_step / (view.level_step + growth * view.jump_place),
+        at_jump / (at_jump + growth * (1.0 - view.jump_place)),
+    );
+}
+
+/// Place from 0 to 1 of a length in the air among the distances of a ray with an interval in the air. Where rays cross a jump of density,
+/// so does a distance of the table, as light and extinction bend there.
+///
+/// Cost: no exp. Error: 2e-3 absolute.
+fn distance_place(view: SkyView, span_m: vec2<f32>, sin_elevation: f32, length_m: f32, meets_ground: bool) -> f32 {
     let part = clamp(length_m / max(span_m.y - span_m.x, 1e-6), 0.0, 1.0);
-    return place_from_part(part, first_step(view, span_m, meets_ground));
+    let at_jump = part_at_jump(view, span_m, sin_elevation, meets_ground);
+    if at_jump == 0.0 {
+        return place_from_part(part, first_step(view, span_m, meets_ground));
+    }
+    let steps = steps_at_jump(view);
+    if part < at_jump {
+        return view.jump_place * place_from_part(part / at_jump, steps.x);
+    }
+    let behind = clamp((part - at_jump) / max(1.0 - at_jump, 1e-6), 0.0, 1.0);
+    return mix(view.jump_place, 1.0, place_from_part(behind, steps.y));
+}
+
+/// Inverse of `distance_place`: length in the air, m.
+///
+/// Cost: no exp. Error: 1e-4 relative plus 300 absolute.
+fn length_from_distance_place(view: SkyView, span_m: vec2<f32>, sin_elevation: f32, place: f32, meets_ground: bool) -> f32 {
+    let at_jump = part_at_jump(view, span_m, sin_elevation, meets_ground);
+    var part = part_from_place(place, first_step(view, span_m, meets_ground));
+    if at_jump > 0.0 && place < view.jump_place {
+        part = at_jump * part_from_place(place / view.jump_place, steps_at_jump(view).x);
+    } else if at_jump > 0.0 {
+        part = mix(at_jump, 1.0, part_from_place((place - view.jump_place) / (1.0 - view.jump_place), steps_at_jump(view).y));
+    }
+    return part * (span_m.y - span_m.x);
 }
 
 /// Place from 0 to 1 of a scattering angle in a table of phase functions, dense forwards, by 1 minus the cosine.
@@ -377,10 +449,10 @@ fn aerial_perspective(
     }
     let share = share_below_jump(view, span, direction.y, length_m, is_below);
     let extinction = mix(view.extinction_above, vec4<f32>(1.0), share);
-    let place = distance_place(view, span, length_m, is_below);
+    let place = distance_place(view, span, direction.y, length_m, is_below);
     let row = row_coordinate(view, elevation_rad, is_below, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
     let uvw = vec3<f32>(
-        texel_coordinate(column_place(view, azimuth_place(direction, view.sun)), AERIAL_AZIMUTHS),
+        texel_coordinate(aerial_column_place(view, azimuth_place(direction, view.sun)), AERIAL_AZIMUTHS),
         row,
         texel_coordinate(place, AERIAL_DISTANCES),
     );
@@ -414,7 +486,7 @@ fn aerial_transmittance(
     }
     let share = share_below_jump(view, span, direction.y, length_m, is_below);
     let extinction = mix(view.extinction_above, vec4<f32>(1.0), share);
-    let place = distance_place(view, span, length_m, is_below);
+    let place = distance_place(view, span, direction.y, length_m, is_below);
     let row = row_coordinate(view, elevation_rad, is_below, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
     let uv = vec2<f32>(texel_coordinate(place, AERIAL_DISTANCES), row);
     return exp(textureSampleLevel(extinction_table, linear_sampler, uv, 0.0) * extinction * (length_m * -1e-3));

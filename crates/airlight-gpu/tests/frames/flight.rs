@@ -4,12 +4,17 @@ use super::valley_fog;
 use airlight::atmosphere::{DensityProfile, Preset};
 use airlight::axes;
 use airlight::glam::DVec3;
-use airlight::sky::{SkySettings, View};
+use airlight::sky::View;
 use airlight::spectrum::RgbSpace;
 use airlight_gpu::{FrameTables, SkySolver};
 
 fn solver(air: Preset) -> SkySolver {
-    SkySolver::new(&air.atmosphere(), &SkySettings::default(), RgbSpace::Srgb).unwrap()
+    SkySolver::new(
+        &air.atmosphere(),
+        &SkySolver::default_settings(),
+        RgbSpace::Srgb,
+    )
+    .unwrap()
 }
 
 /// Luminance of the tables along a direction.

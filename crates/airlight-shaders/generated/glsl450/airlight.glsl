@@ -111,6 +111,8 @@ struct SkyView {
     float dense_width;
     float even_below;
     float jump_height_m;
+    float jump_place;
+    float level_step;
     vec4 extinction_above;
     vec4 smooth_above;
     vec4 haze_above;
@@ -165,9 +167,10 @@ const float SKY_AZIMUTHS = 64.0;
 const float SKY_ROWS_ABOVE = 125.0;
 const float SKY_ROWS_BELOW = 35.0;
 const float AERIAL_AZIMUTHS = 32.0;
+const float AERIAL_FIRST_COLUMN = 0.4;
 const float AERIAL_ROWS_ABOVE = 32.0;
 const float AERIAL_ROWS_BELOW = 32.0;
-const float AERIAL_DISTANCES = 32.0;
+const float AERIAL_DISTANCES = 40.0;
 const float PHASE_ANGLES = 1024.0;
 const float FOG_AZIMUTHS = 32.0;
 const float FOG_ROWS = 64.0;
@@ -1385,8 +1388,8 @@ vec3 light_at(LightRay ray_15, float place_m_2) {
     if ((ray_15.light.kind == LIGHT_SPOT)) {
         float cos_angle_3 = ((ray_15.across_m + (place_m_2 * ray_15.along)) / _e4);
         float range = max((ray_15.light.cos_inner - ray_15.light.cos_outer), 1e-6);
-        float part_1 = clamp(((cos_angle_3 - ray_15.light.cos_outer) / range), 0.0, 1.0);
-        return vec3((part_1 * part_1), _e4, one_minus_cos_10);
+        float part_2 = clamp(((cos_angle_3 - ray_15.light.cos_outer) / range), 0.0, 1.0);
+        return vec3((part_2 * part_2), _e4, one_minus_cos_10);
     }
     if ((ray_15.light.kind == LIGHT_SPHERE)) {
         float radius_m_4 = ray_15.light.radius_m;
@@ -1594,8 +1597,8 @@ vec3 light_panel_in_exponential_fog(ExponentialFog fog_4, float eye_height_m_1, 
             float _e151 = forward;
             float t_3 = max((_e150 + (((_e151 * 0.5) * _e147.x) * ((_e147.x + (2.0 * _e119)) / s_1))), 0.0);
             float _e165 = forward;
-            float place_8 = (((_e165 * 0.5) * (s_1 - h_6)) * ((s_1 + h_6) / s_1));
-            vec3 _e173 = light_at(ray_17, place_8);
+            float place_9 = (((_e165 * 0.5) * (s_1 - h_6)) * ((s_1 + h_6) / s_1));
+            vec3 _e173 = light_at(ray_17, place_9);
             float centre_m_1 = ((ray_17.light.kind == LIGHT_SPHERE) ? (_e173.y + ray_17.light.radius_m) : _e173.y);
             float _e185 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_8, t_3, light_height_m_1, centre_m_1, _e173.y);
             float _e192 = decayed((((eye_height_m_1 + (sin_elevation_8 * t_3)) - fog_4.reference_height_m) / fog_4.scale_height_m));
@@ -1865,16 +1868,16 @@ float azimuth_from_column_place(SkyView view_1, float place_2) {
 // Cost: no exp.
 float row_place(SkyView view_2, float elevation_rad, bool is_below) {
     if (is_below) {
-        float part_2 = ((elevation_rad - view_2.horizon_rad) / (-1.5707964 - view_2.horizon_rad));
-        float root_2 = sqrt(sqrt(clamp(part_2, 0.0, 1.0)));
+        float part_3 = ((elevation_rad - view_2.horizon_rad) / (-1.5707964 - view_2.horizon_rad));
+        float root_2 = sqrt(sqrt(clamp(part_3, 0.0, 1.0)));
         return (root_2 * ((1.0 - view_2.even_below) + (view_2.even_below * root_2)));
     }
     if ((elevation_rad < view_2.kink_rad)) {
-        float part_3 = clamp(((elevation_rad - view_2.horizon_rad) / (view_2.kink_rad - view_2.horizon_rad)), 0.0, 1.0);
-        return ((view_2.kink_place * 0.63661975) * atan(sqrt(part_3), sqrt((1.0 - part_3))));
+        float part_4 = clamp(((elevation_rad - view_2.horizon_rad) / (view_2.kink_rad - view_2.horizon_rad)), 0.0, 1.0);
+        return ((view_2.kink_place * 0.63661975) * atan(sqrt(part_4), sqrt((1.0 - part_4))));
     }
-    float part_4 = clamp(((elevation_rad - view_2.kink_rad) / (view_2.highest_rad - view_2.kink_rad)), 0.0, 1.0);
-    return (view_2.kink_place + ((1.0 - view_2.kink_place) * sqrt(part_4)));
+    float part_5 = clamp(((elevation_rad - view_2.kink_rad) / (view_2.highest_rad - view_2.kink_rad)), 0.0, 1.0);
+    return (view_2.kink_place + ((1.0 - view_2.kink_place) * sqrt(part_5)));
 }
 
 // Inverse of `row_place`: elevation of a place, rad.
@@ -1890,8 +1893,8 @@ float elevation_from_row_place(SkyView view_3, float place_3, bool is_below_1) {
         float sine_6 = sin(((1.5707964 * place_3) / view_3.kink_place));
         return (view_3.horizon_rad + (((view_3.kink_rad - view_3.horizon_rad) * sine_6) * sine_6));
     }
-    float part_5 = ((place_3 - view_3.kink_place) / (1.0 - view_3.kink_place));
-    return (view_3.kink_rad + (((view_3.highest_rad - view_3.kink_rad) * part_5) * part_5));
+    float part_6 = ((place_3 - view_3.kink_place) / (1.0 - view_3.kink_place));
+    return (view_3.kink_rad + (((view_3.highest_rad - view_3.kink_rad) * part_6) * part_6));
 }
 
 // Texture coordinate of an elevation in a table with rows above and below the horizon, at their `row_place`. The first rows hold the elevations from the horizon on; both parts end in texel centres, so that filtering does not mix them.
@@ -1909,8 +1912,8 @@ float elevation_from_row_coordinate(SkyView view_5, float coordinate_1, float ro
     float row_2 = (coordinate_1 * (rows_above_1 + rows_below_1));
     bool is_below_3 = (row_2 >= rows_above_1);
     float rows_1 = (is_below_3 ? rows_below_1 : rows_above_1);
-    float place_9 = (((row_2 - (is_below_3 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0));
-    float _e16 = elevation_from_row_place(view_5, place_9, is_below_3);
+    float place_10 = (((row_2 - (is_below_3 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0));
+    float _e16 = elevation_from_row_place(view_5, place_10, is_below_3);
     return _e16;
 }
 
@@ -1963,9 +1966,9 @@ vec2 air_span_m(SkyView view_8, float sin_elevation_9, bool meets_ground) {
     return vec2(start_4, max(_e50, start_4));
 }
 
-// Part of the way of a ray through the air, up to a length, that is below the jump of density nearest to the eye.
+// Interval of a ray inside the air that is below the jump of density nearest to the eye, m from the eye; (0, 0) if none is.
 // Cost: no exp.
-float share_below_jump(SkyView view_9, vec2 span_m, float sin_elevation_10, float length_m_14, bool meets_ground_1) {
+vec2 below_jump_m(SkyView view_9, vec2 span_m, float sin_elevation_10, bool meets_ground_1) {
     bool local_17 = false;
     bool local_18 = false;
     float exit = 0.0;
@@ -1978,14 +1981,14 @@ float share_below_jump(SkyView view_9, vec2 span_m, float sin_elevation_10, floa
         } else {
             local_18 = true;
         }
-        bool _e34 = local_18;
-        local_17 = _e34;
+        bool _e33 = local_18;
+        local_17 = _e33;
     } else {
         local_17 = false;
     }
-    bool _e36 = local_17;
-    if (_e36) {
-        return 0.0;
+    bool _e35 = local_17;
+    if (_e35) {
+        return vec2(0.0);
     }
     float root_5 = sqrt(max(squared_root, 0.0));
     float entry = ((over_jump > 0.0) ? (over_jump / (root_5 - b_4)) : 0.0);
@@ -1997,22 +2000,29 @@ float share_below_jump(SkyView view_9, vec2 span_m, float sin_elevation_10, floa
             exit = (-(over_jump) / (root_5 + b_4));
         }
     }
-    float _e57 = exit;
-    float below_m_1 = (min((span_m.x + length_m_14), _e57) - max(span_m.x, entry));
+    float _e55 = exit;
+    return vec2(entry, _e55);
+}
+
+// Part of the way of a ray through the air, up to a length, that is below the jump of density nearest to the eye.
+// Cost: no exp.
+float share_below_jump(SkyView view_10, vec2 span_m_1, float sin_elevation_11, float length_m_14, bool meets_ground_2) {
+    vec2 _e5 = below_jump_m(view_10, span_m_1, sin_elevation_11, meets_ground_2);
+    float below_m_1 = (min((span_m_1.x + length_m_14), _e5.y) - max(span_m_1.x, _e5.x));
     return clamp((below_m_1 / max(length_m_14, 1e-6)), 0.0, 1.0);
 }
 
-// Length of the first step between the distances of a ray with an interval in the air, relative to even steps. From inside the air distances are dense near the eye, at the square of the place: 0; from above it towards the ground, where most air is, dense there: 2. Steep rays from high in the air are between.
+// Length of the first step between the distances of a ray with an interval in the air, relative to even steps. From inside the air distances are dense near the eye, at the square of the place: 0, or a little more where a jump has a place among them; from above it towards the ground, where most air is, dense there: 2. Steep rays from high in the air are between.
 // Cost: no exp.
-float first_step(SkyView view_10, vec2 span_m_1, bool meets_ground_2) {
-    if ((view_10.height_m >= view_10.air_height_m)) {
-        return (meets_ground_2 ? 2.0 : 1.0);
+float first_step(SkyView view_11, vec2 span_m_2, bool meets_ground_3) {
+    if ((view_11.height_m >= view_11.air_height_m)) {
+        return (meets_ground_3 ? 2.0 : 1.0);
     }
-    if (!(meets_ground_2)) {
-        return 0.0;
+    if (!(meets_ground_3)) {
+        return view_11.level_step;
     }
-    float slant = (1.0 - min((view_10.height_m / max(span_m_1.y, 1.0)), 1.0));
-    float high = min(((2.5 * view_10.height_m) / view_10.air_height_m), 1.0);
+    float slant = (1.0 - min((view_11.height_m / max(span_m_2.y, 1.0)), 1.0));
+    float high = min(((2.5 * view_11.height_m) / view_11.air_height_m), 1.0);
     return ((2.0 * high) * (1.0 - (((slant * slant) * slant) * slant)));
 }
 
@@ -2030,13 +2040,88 @@ float part_from_place(float place_4, float first_step_2) {
     return (place_4 * (first_step_2 + ((1.0 - first_step_2) * place_4)));
 }
 
-// Place from 0 to 1 of a length in the air among the distances of a ray with an interval in the air.
+// Place from 0 to 1 of an azimuth from the sun, in half turns, among the columns of an aerial-perspective table.
 // Cost: no exp.
-float distance_place(SkyView view_11, vec2 span_m_2, float length_m_15, bool meets_ground_3) {
-    float part_6 = clamp((length_m_15 / max((span_m_2.y - span_m_2.x), 1e-6)), 0.0, 1.0);
-    float _e13 = first_step(view_11, span_m_2, meets_ground_3);
-    float _e14 = place_from_part(part_6, _e13);
-    return _e14;
+float aerial_column_place(SkyView view_12, float azimuth_2) {
+    float _e2 = column_place(view_12, azimuth_2);
+    float _e4 = place_from_part(_e2, AERIAL_FIRST_COLUMN);
+    return _e4;
+}
+
+// Part of the way of a ray through the air at which it first crosses the jump of density nearest to the eye; 0 if it does not cross it, or meets the ground.
+// Cost: no exp.
+float part_at_jump(SkyView view_13, vec2 span_m_3, float sin_elevation_12, bool meets_ground_4) {
+    bool local_19 = false;
+    if (!((view_13.jump_place == 0.0))) {
+        local_19 = meets_ground_4;
+    } else {
+        local_19 = true;
+    }
+    bool _e11 = local_19;
+    if (_e11) {
+        return 0.0;
+    }
+    vec2 _e13 = below_jump_m(view_13, span_m_3, sin_elevation_12, meets_ground_4);
+    float crossing = ((_e13.x > span_m_3.x) ? _e13.x : _e13.y);
+    return clamp(((crossing - span_m_3.x) / max((span_m_3.y - span_m_3.x), 1e-6)), 0.0, 1.0);
+}
+
+// Lengths of the first steps between the distances before and behind a jump, as `first_step`, for which the step does not change there along the ray that grazes the jump, or from below along the level one.
+// Cost: no exp.
+vec2 steps_at_jump(SkyView view_14) {
+    float growth = (1.0 - view_14.level_step);
+    float at_jump = (view_14.level_step + ((2.0 * growth) * view_14.jump_place));
+    return vec2((view_14.level_step / (view_14.level_step + (growth * view_14.jump_place))), (at_jump / (at_jump + (growth * (1.0 - view_14.jump_place)))));
+}
+
+// Place from 0 to 1 of a length in the air among the distances of a ray with an interval in the air. Where rays cross a jump of density, so does a distance of the table, as light and extinction bend there.
+// Cost: no exp.
+float distance_place(SkyView view_15, vec2 span_m_4, float sin_elevation_13, float length_m_15, bool meets_ground_5) {
+    float part_7 = clamp((length_m_15 / max((span_m_4.y - span_m_4.x), 1e-6)), 0.0, 1.0);
+    float _e14 = part_at_jump(view_15, span_m_4, sin_elevation_13, meets_ground_5);
+    if ((_e14 == 0.0)) {
+        float _e17 = first_step(view_15, span_m_4, meets_ground_5);
+        float _e18 = place_from_part(part_7, _e17);
+        return _e18;
+    }
+    vec2 _e19 = steps_at_jump(view_15);
+    if ((part_7 < _e14)) {
+        float _e24 = place_from_part((part_7 / _e14), _e19.x);
+        return (view_15.jump_place * _e24);
+    }
+    float behind = clamp(((part_7 - _e14) / max((1.0 - _e14), 1e-6)), 0.0, 1.0);
+    float _e37 = place_from_part(behind, _e19.y);
+    return mix(view_15.jump_place, 1.0, _e37);
+}
+
+// Inverse of `distance_place`: length in the air, m.
+// Cost: no exp.
+float length_from_distance_place(SkyView view_16, vec2 span_m_5, float sin_elevation_14, float place_5, bool meets_ground_6) {
+    float part_1 = 0.0;
+    bool local_20 = false;
+    float _e5 = part_at_jump(view_16, span_m_5, sin_elevation_14, meets_ground_6);
+    float _e6 = first_step(view_16, span_m_5, meets_ground_6);
+    float _e7 = part_from_place(place_5, _e6);
+    part_1 = _e7;
+    if ((_e5 > 0.0)) {
+        local_20 = (place_5 < view_16.jump_place);
+    } else {
+        local_20 = false;
+    }
+    bool _e16 = local_20;
+    if (_e16) {
+        vec2 _e19 = steps_at_jump(view_16);
+        float _e21 = part_from_place((place_5 / view_16.jump_place), _e19.x);
+        part_1 = (_e5 * _e21);
+    } else {
+        if ((_e5 > 0.0)) {
+            vec2 _e31 = steps_at_jump(view_16);
+            float _e33 = part_from_place(((place_5 - view_16.jump_place) / (1.0 - view_16.jump_place)), _e31.y);
+            part_1 = mix(_e5, 1.0, _e33);
+        }
+    }
+    float _e36 = part_1;
+    return (_e36 * (span_m_5.y - span_m_5.x));
 }
 
 // Place from 0 to 1 of a scattering angle in a table of phase functions, dense forwards, by 1 minus the cosine.
@@ -2048,8 +2133,8 @@ float phase_place(float one_minus_cos_6) {
 
 // Inverse of `phase_place`.
 // Cost: no exp.
-float one_minus_cos_from_phase_place(float place_5) {
-    float half_sine = sin(((1.5707964 * place_5) * place_5));
+float one_minus_cos_from_phase_place(float place_6) {
+    float half_sine = sin(((1.5707964 * place_6) * place_6));
     return ((2.0 * half_sine) * half_sine);
 }
 
@@ -2064,13 +2149,13 @@ vec4 haze_phase(sampler2D phase_table, float one_minus_cos_7) {
 
 // Radiance of the sky, or of the ground below the horizon, along a direction at four wavelengths, without the sun's disc.
 // Cost: 8 exp, 3 reads.
-vec4 sky_radiance(SkyView view_12, SkyScales scales, sampler2D smooth_table, sampler2D haze_table, sampler2D phase_table_1, vec3 direction_8) {
+vec4 sky_radiance(SkyView view_17, SkyScales scales, sampler2D smooth_table, sampler2D haze_table, sampler2D phase_table_1, vec3 direction_8) {
     float _e7 = elevation_of(direction_8);
-    if ((_e7 > view_12.highest_rad)) {
+    if ((_e7 > view_17.highest_rad)) {
         return vec4(0.0);
     }
-    vec2 _e12 = uv_from_direction(view_12, direction_8);
-    float _e14 = one_minus_cos_between(direction_8, view_12.sun);
+    vec2 _e12 = uv_from_direction(view_17, direction_8);
+    float _e14 = one_minus_cos_between(direction_8, view_17.sun);
     vec4 _e15 = haze_phase(phase_table_1, _e14);
     vec4 _e17 = textureLod(smooth_table, vec2(_e12), 0.0);
     vec4 smooth_light_1 = (exp(_e17) * scales.smooth_light);
@@ -2081,77 +2166,77 @@ vec4 sky_radiance(SkyView view_12, SkyScales scales, sampler2D smooth_table, sam
 
 // Air between the eye and a point at a distance along a direction, at four wavelengths. The extinction table holds the mean extinction from the first air on, 1/km, as if all of it were below the jump of density nearest to the eye.
 // Cost: 12 exp, 4 reads.
-SpectralPath aerial_perspective(SkyView view_13, SkyScales scales_1, sampler3D smooth_table_1, sampler3D haze_table_1, sampler2D extinction_table, sampler2D phase_table_2, vec3 direction_9, float distance_m_1) {
-    bool local_19 = false;
+SpectralPath aerial_perspective(SkyView view_18, SkyScales scales_1, sampler3D smooth_table_1, sampler3D haze_table_1, sampler2D extinction_table, sampler2D phase_table_2, vec3 direction_9, float distance_m_1) {
+    bool local_21 = false;
     vec4 smooth_light = vec4(0.0);
     vec4 haze = vec4(0.0);
     float _e9 = elevation_of(direction_9);
-    bool is_below_5 = (_e9 < view_13.horizon_rad);
-    vec2 _e13 = air_span_m(view_13, direction_9.y, is_below_5);
+    bool is_below_5 = (_e9 < view_18.horizon_rad);
+    vec2 _e13 = air_span_m(view_18, direction_9.y, is_below_5);
     float length_m_17 = (min(distance_m_1, _e13.y) - _e13.x);
     if (!((length_m_17 <= 0.0))) {
-        local_19 = (_e9 > view_13.highest_rad);
+        local_21 = (_e9 > view_18.highest_rad);
     } else {
-        local_19 = true;
+        local_21 = true;
     }
-    bool _e26 = local_19;
+    bool _e26 = local_21;
     if (_e26) {
         return SpectralPath(vec4(1.0), vec4(0.0));
     }
-    float _e33 = share_below_jump(view_13, _e13, direction_9.y, length_m_17, is_below_5);
-    vec4 extinction_2 = mix(view_13.extinction_above, vec4(1.0), _e33);
-    float _e38 = distance_place(view_13, _e13, length_m_17, is_below_5);
-    float _e41 = row_coordinate(view_13, _e9, is_below_5, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
-    float _e43 = azimuth_place(direction_9, view_13.sun);
-    float _e44 = column_place(view_13, _e43);
-    float _e46 = texel_coordinate(_e44, AERIAL_AZIMUTHS);
-    float _e48 = texel_coordinate(_e38, AERIAL_DISTANCES);
-    vec3 uvw = vec3(_e46, _e41, _e48);
-    float _e51 = one_minus_cos_between(direction_9, view_13.sun);
-    vec4 _e52 = haze_phase(phase_table_2, _e51);
-    vec4 _e55 = textureLod(extinction_table, vec2(uvw.zy), 0.0);
-    vec4 depth_5 = ((_e55 * extinction_2) * (length_m_17 * 0.001));
-    vec4 _e61 = textureLod(smooth_table_1, vec3(uvw), 0.0);
-    smooth_light = (exp(_e61) * scales_1.smooth_light);
-    vec4 _e67 = textureLod(haze_table_1, vec3(uvw), 0.0);
-    haze = (exp(_e67) * scales_1.haze);
-    vec4 _e72 = smooth_light;
-    smooth_light = (_e72 * mix(view_13.smooth_above, vec4(1.0), _e33));
-    vec4 _e78 = haze;
-    haze = (_e78 * mix(view_13.haze_above, vec4(1.0), _e33));
-    vec3 _e85 = mean_transmittance_rgb(depth_5.xyz);
-    float _e87 = mean_transmittance(depth_5.w);
-    vec4 opacity_2 = (depth_5 * vec4(_e85, _e87));
-    vec4 _e93 = smooth_light;
-    vec4 _e94 = haze;
-    return SpectralPath((vec4(1.0) - opacity_2), (((_e93 + (_e94 * _e52)) / extinction_2) * opacity_2));
+    float _e33 = share_below_jump(view_18, _e13, direction_9.y, length_m_17, is_below_5);
+    vec4 extinction_2 = mix(view_18.extinction_above, vec4(1.0), _e33);
+    float _e39 = distance_place(view_18, _e13, direction_9.y, length_m_17, is_below_5);
+    float _e42 = row_coordinate(view_18, _e9, is_below_5, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    float _e44 = azimuth_place(direction_9, view_18.sun);
+    float _e45 = aerial_column_place(view_18, _e44);
+    float _e47 = texel_coordinate(_e45, AERIAL_AZIMUTHS);
+    float _e49 = texel_coordinate(_e39, AERIAL_DISTANCES);
+    vec3 uvw = vec3(_e47, _e42, _e49);
+    float _e52 = one_minus_cos_between(direction_9, view_18.sun);
+    vec4 _e53 = haze_phase(phase_table_2, _e52);
+    vec4 _e56 = textureLod(extinction_table, vec2(uvw.zy), 0.0);
+    vec4 depth_5 = ((_e56 * extinction_2) * (length_m_17 * 0.001));
+    vec4 _e62 = textureLod(smooth_table_1, vec3(uvw), 0.0);
+    smooth_light = (exp(_e62) * scales_1.smooth_light);
+    vec4 _e68 = textureLod(haze_table_1, vec3(uvw), 0.0);
+    haze = (exp(_e68) * scales_1.haze);
+    vec4 _e73 = smooth_light;
+    smooth_light = (_e73 * mix(view_18.smooth_above, vec4(1.0), _e33));
+    vec4 _e79 = haze;
+    haze = (_e79 * mix(view_18.haze_above, vec4(1.0), _e33));
+    vec3 _e86 = mean_transmittance_rgb(depth_5.xyz);
+    float _e88 = mean_transmittance(depth_5.w);
+    vec4 opacity_2 = (depth_5 * vec4(_e86, _e88));
+    vec4 _e94 = smooth_light;
+    vec4 _e95 = haze;
+    return SpectralPath((vec4(1.0) - opacity_2), (((_e94 + (_e95 * _e53)) / extinction_2) * opacity_2));
 }
 
 // Transmittance of the air between the eye and a point at a distance along a direction, at four wavelengths: that of `aerial_perspective` alone.
 // Cost: 4 exp, 1 read.
-vec4 aerial_transmittance(SkyView view_14, sampler2D extinction_table_1, vec3 direction_10, float distance_m_2) {
-    bool local_20 = false;
+vec4 aerial_transmittance(SkyView view_19, sampler2D extinction_table_1, vec3 direction_10, float distance_m_2) {
+    bool local_22 = false;
     float _e5 = elevation_of(direction_10);
-    bool is_below_6 = (_e5 < view_14.horizon_rad);
-    vec2 _e9 = air_span_m(view_14, direction_10.y, is_below_6);
+    bool is_below_6 = (_e5 < view_19.horizon_rad);
+    vec2 _e9 = air_span_m(view_19, direction_10.y, is_below_6);
     float length_m_18 = (min(distance_m_2, _e9.y) - _e9.x);
     if (!((length_m_18 <= 0.0))) {
-        local_20 = (_e5 > view_14.highest_rad);
+        local_22 = (_e5 > view_19.highest_rad);
     } else {
-        local_20 = true;
+        local_22 = true;
     }
-    bool _e22 = local_20;
+    bool _e22 = local_22;
     if (_e22) {
         return vec4(1.0);
     }
-    float _e26 = share_below_jump(view_14, _e9, direction_10.y, length_m_18, is_below_6);
-    vec4 extinction_3 = mix(view_14.extinction_above, vec4(1.0), _e26);
-    float _e31 = distance_place(view_14, _e9, length_m_18, is_below_6);
-    float _e34 = row_coordinate(view_14, _e5, is_below_6, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
-    float _e36 = texel_coordinate(_e31, AERIAL_DISTANCES);
-    vec2 uv = vec2(_e36, _e34);
-    vec4 _e39 = textureLod(extinction_table_1, vec2(uv), 0.0);
-    return exp(((_e39 * extinction_3) * (length_m_18 * -0.001)));
+    float _e26 = share_below_jump(view_19, _e9, direction_10.y, length_m_18, is_below_6);
+    vec4 extinction_3 = mix(view_19.extinction_above, vec4(1.0), _e26);
+    float _e32 = distance_place(view_19, _e9, direction_10.y, length_m_18, is_below_6);
+    float _e35 = row_coordinate(view_19, _e5, is_below_6, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    float _e37 = texel_coordinate(_e32, AERIAL_DISTANCES);
+    vec2 uv = vec2(_e37, _e35);
+    vec4 _e40 = textureLod(extinction_table_1, vec2(uv), 0.0);
+    return exp(((_e40 * extinction_3) * (length_m_18 * -0.001)));
 }
 
 // Transmittance and path radiance in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
@@ -2171,9 +2256,9 @@ float fog_row_place(float per_sine, float sine, float elevation_rad_3) {
 
 // Texture coordinate of the rows of a direction: falling rays come first.
 // Cost: 2 exp.
-float fog_row_coordinate(FogTableView view_15, vec3 direction_11) {
+float fog_row_coordinate(FogTableView view_20, vec3 direction_11) {
     bool is_above = (direction_11.y > 0.0);
-    float per_sine_1 = (is_above ? view_15.above_per_sine : view_15.below_per_sine);
+    float per_sine_1 = (is_above ? view_20.above_per_sine : view_20.below_per_sine);
     float _e10 = elevation_of(direction_11);
     float _e12 = fog_row_place(per_sine_1, abs(direction_11.y), abs(_e10));
     return ((((is_above ? FOG_ROWS : 0.0) + 0.5) + (_e12 * 63.0)) / 128.0);
@@ -2181,8 +2266,8 @@ float fog_row_coordinate(FogTableView view_15, vec3 direction_11) {
 
 // Texture coordinate in stacked tables from that in the table of the layer.
 // Cost: no exp.
-float fog_stacked_coordinate(FogTableView view_16, float coordinate_2) {
-    return ((view_16.layer + coordinate_2) / view_16.layer_count);
+float fog_stacked_coordinate(FogTableView view_21, float coordinate_2) {
+    return ((view_21.layer + coordinate_2) / view_21.layer_count);
 }
 
 // Opacity of an optical depth: 1 minus the transmittance, without cancellation.
@@ -2194,9 +2279,9 @@ vec3 fog_opacity(vec3 depth_2) {
 
 // Place of a distance, 0 to 1, from the opacity and the transmittance up to there, relative to those of the whole ray to the ground or through the fog.
 // Cost: 6 exp.
-float fog_distance_place(FogTableView view_17, float sin_elevation_11, vec3 opacity, vec3 transmittance_1) {
-    vec3 vertical = ((sin_elevation_11 > 0.0) ? view_17.depth_above : view_17.depth_below);
-    vec3 depth_6 = min((vertical / vec3(max(abs(sin_elevation_11), 1e-10))), vec3(1e25));
+float fog_distance_place(FogTableView view_22, float sin_elevation_15, vec3 opacity, vec3 transmittance_1) {
+    vec3 vertical = ((sin_elevation_15 > 0.0) ? view_22.depth_above : view_22.depth_below);
+    vec3 depth_6 = min((vertical / vec3(max(abs(sin_elevation_15), 1e-10))), vec3(1e25));
     vec3 _e17 = fog_opacity(depth_6);
     float whole = dot(_e17, vec3(1.0));
     float thin = (whole - dot(opacity, vec3(1.0)));
@@ -2207,35 +2292,35 @@ float fog_distance_place(FogTableView view_17, float sin_elevation_11, vec3 opac
 
 // Sunlight that is scattered once with a phase function, by its index, in a stream (0, 1 or 2), per unit of opacity, before its scale: from the texture coordinates of distance, row and angle.
 // Cost: 3 exp, 2 reads.
-vec3 fog_stream_light(FogTableView view_18, sampler3D stream_table, sampler2D stream_phase_table, vec3 place_6, float phase_1, float stream) {
-    float slice = ((((3.0 * phase_1) + stream) + 0.5) / (3.0 * view_18.phase_count));
-    float _e17 = fog_stacked_coordinate(view_18, slice);
-    vec3 uvw_1 = vec3(place_6.xy, _e17);
+vec3 fog_stream_light(FogTableView view_23, sampler3D stream_table, sampler2D stream_phase_table, vec3 place_7, float phase_1, float stream) {
+    float slice = ((((3.0 * phase_1) + stream) + 0.5) / (3.0 * view_23.phase_count));
+    float _e17 = fog_stacked_coordinate(view_23, slice);
+    vec3 uvw_1 = vec3(place_7.xy, _e17);
     vec4 logarithms = textureLod(stream_table, vec3(uvw_1), 0.0);
-    vec4 scattered_2 = textureLod(stream_phase_table, vec2(vec2(place_6.z, slice)), 0.0);
+    vec4 scattered_2 = textureLod(stream_phase_table, vec2(vec2(place_7.z, slice)), 0.0);
     return (exp(logarithms.xyz) * scattered_2.xyz);
 }
 
 // A layer of fog between the eye and a point, by its optical depth on the way: extinction times `exponential_column_m`, or the column of another profile. Rays end at the ground. Of several layers, transmittances multiply and path radiances add up. A step is a phase function of the fog.
 // Cost: 14 exp, 9 exp a step, 1 read, 6 reads a step.
-PathOptics tabulated_fog(FogTableView view_19, sampler3D diffuse_table, sampler3D stream_table_1, sampler2D stream_phase_table_1, vec3 direction_12, vec3 optical_depth_2) {
+PathOptics tabulated_fog(FogTableView view_24, sampler3D diffuse_table, sampler3D stream_table_1, sampler2D stream_phase_table_1, vec3 direction_12, vec3 optical_depth_2) {
     vec3 sunlit_1 = vec3(0.0);
     float phase_2 = 0.0;
     vec3 _e7 = fog_opacity(optical_depth_2);
     vec3 transmittance_3 = exp(-(optical_depth_2));
-    float _e11 = azimuth_place(direction_12, view_19.sun);
+    float _e11 = azimuth_place(direction_12, view_24.sun);
     float _e13 = texel_coordinate(_e11, FOG_AZIMUTHS);
-    float _e14 = fog_row_coordinate(view_19, direction_12);
-    float _e16 = fog_distance_place(view_19, direction_12.y, _e7, transmittance_3);
+    float _e14 = fog_row_coordinate(view_24, direction_12);
+    float _e16 = fog_distance_place(view_24, direction_12.y, _e7, transmittance_3);
     float _e18 = texel_coordinate(_e16, FOG_DISTANCES);
-    float _e19 = fog_stacked_coordinate(view_19, _e18);
+    float _e19 = fog_stacked_coordinate(view_24, _e18);
     vec3 uvw_2 = vec3(_e13, _e14, _e19);
     vec4 _e22 = textureLod(diffuse_table, vec3(uvw_2), 0.0);
     vec3 diffuse = _e22.xyz;
-    float _e25 = one_minus_cos_between(direction_12, view_19.sun);
+    float _e25 = one_minus_cos_between(direction_12, view_24.sun);
     float _e26 = phase_place(_e25);
     float _e28 = texel_coordinate(_e26, PHASE_ANGLES);
-    vec3 place_10 = vec3(_e18, _e14, _e28);
+    vec3 place_11 = vec3(_e18, _e14, _e28);
     bool loop_init_12 = true;
     while(true) {
         if (!loop_init_12) {
@@ -2244,23 +2329,23 @@ PathOptics tabulated_fog(FogTableView view_19, sampler3D diffuse_table, sampler3
         }
         loop_init_12 = false;
         float _e35 = phase_2;
-        if ((_e35 < view_19.phase_count)) {
+        if ((_e35 < view_24.phase_count)) {
         } else {
             break;
         }
         {
             vec3 _e38 = sunlit_1;
             float _e39 = phase_2;
-            vec3 _e41 = fog_stream_light(view_19, stream_table_1, stream_phase_table_1, place_10, _e39, 0.0);
+            vec3 _e41 = fog_stream_light(view_24, stream_table_1, stream_phase_table_1, place_11, _e39, 0.0);
             float _e42 = phase_2;
-            vec3 _e44 = fog_stream_light(view_19, stream_table_1, stream_phase_table_1, place_10, _e42, 1.0);
+            vec3 _e44 = fog_stream_light(view_24, stream_table_1, stream_phase_table_1, place_11, _e42, 1.0);
             float _e46 = phase_2;
-            vec3 _e48 = fog_stream_light(view_19, stream_table_1, stream_phase_table_1, place_10, _e46, 2.0);
+            vec3 _e48 = fog_stream_light(view_24, stream_table_1, stream_phase_table_1, place_11, _e46, 2.0);
             sunlit_1 = (_e38 + ((_e41 + _e44) + _e48));
         }
     }
     vec3 _e57 = sunlit_1;
-    vec3 source_1 = ((view_19.diffuse_scale * diffuse) + (view_19.sunlit_scale * max(_e57, vec3(0.0))));
+    vec3 source_1 = ((view_24.diffuse_scale * diffuse) + (view_24.sunlit_scale * max(_e57, vec3(0.0))));
     return PathOptics(transmittance_3, (_e7 * source_1));
 }
 
@@ -2356,11 +2441,11 @@ ArticleSky article_sky(float eye_altitude_m, float zenith_illuminance) {
 
 // Light that a point scatters along a view ray, per metre.
 // Cost: 6 exp, 3 exp a step; 8 steps.
-vec3 article_source(ArticleSky sky, vec3 position_7, vec3 view_20, vec3 sun_1) {
+vec3 article_source(ArticleSky sky, vec3 position_7, vec3 view_25, vec3 sun_1) {
     float _e5 = article_distance_m(position_7, sun_1, ARTICLE_TOP_RADIUS_M);
     vec3 leaves = (position_7 + (sun_1 * _e5));
     vec3 _e8 = article_transmittance(position_7, leaves);
-    float mu_3 = dot(view_20, sun_1);
+    float mu_3 = dot(view_25, sun_1);
     vec3 _e10 = article_sigma_rayleigh(position_7);
     float _e11 = article_rayleigh_phase(mu_3);
     vec3 rayleigh = (_e10 * _e11);
@@ -2372,11 +2457,11 @@ vec3 article_source(ArticleSky sky, vec3 position_7, vec3 view_20, vec3 sun_1) {
 
 // Luminance of the sky along a direction above the horizon, without the sun's disc.
 // Cost: 15 exp a step; 8 steps, in each of which two marches of 8 steps take 6 of these, 456 in all.
-vec3 article_luminance(ArticleSky sky_1, vec3 view_21, vec3 sun_2) {
+vec3 article_luminance(ArticleSky sky_1, vec3 view_26, vec3 sun_2) {
     vec3 sum_6 = vec3(0.0);
     int i_13 = 0;
-    float _e6 = article_distance_m(sky_1.eye, view_21, ARTICLE_TOP_RADIUS_M);
-    vec3 leaves_1 = (sky_1.eye + (view_21 * _e6));
+    float _e6 = article_distance_m(sky_1.eye, view_26, ARTICLE_TOP_RADIUS_M);
+    vec3 leaves_1 = (sky_1.eye + (view_26 * _e6));
     vec3 ds_1 = ((leaves_1 - sky_1.eye) / vec3(8.0));
     vec3 direction_15 = (ds_1 / vec3(length(ds_1)));
     bool loop_init_14 = true;
@@ -2406,11 +2491,11 @@ vec3 article_luminance(ArticleSky sky_1, vec3 view_21, vec3 sun_2) {
 
 // Luminance of the sun's disc along a direction above the horizon, whose edge is smooth from 0.95 to 1.05 of its radius. The cosine is clamped to 1, unlike as printed.
 // Cost: 3 exp, 3 exp a step; 8 steps.
-vec3 article_disc(ArticleSky sky_2, vec3 view_22, vec3 sun_3) {
-    float angle = acos(min(dot(view_22, sun_3), 1.0));
+vec3 article_disc(ArticleSky sky_2, vec3 view_27, vec3 sun_3) {
+    float angle = acos(min(dot(view_27, sun_3), 1.0));
     float disc = (1.0 - smoothstep((0.95 * sky_2.sun_radius_rad), (1.05 * sky_2.sun_radius_rad), angle));
-    float _e19 = article_distance_m(sky_2.eye, view_22, ARTICLE_TOP_RADIUS_M);
-    vec3 leaves_2 = (sky_2.eye + (view_22 * _e19));
+    float _e19 = article_distance_m(sky_2.eye, view_27, ARTICLE_TOP_RADIUS_M);
+    vec3 leaves_2 = (sky_2.eye + (view_27 * _e19));
     vec3 _e25 = article_transmittance(sky_2.eye, leaves_2);
     return ((sky_2.outer_space * disc) * _e25);
 }
@@ -2444,8 +2529,8 @@ float place_on_disc(float sin_radius, float one_minus_cos_8) {
 
 // Part of a pixel that the disc covers, 0 to 1: a ramp as wide as a pixel across the edge, so that the edge is smooth and the disc's light is kept, within `(pixel / radius)^2 / 12`. `sin_pixel` is the sine of the angle that a pixel spans; 0 gives a sharp edge.
 // Cost: no exp.
-float disc_coverage(float place_7, float sin_radius_1, float sin_pixel) {
-    return clamp((((1.0 - place_7) * (sin_radius_1 / max(sin_pixel, (1e-6 * sin_radius_1)))) + 0.5), 0.0, 1.0);
+float disc_coverage(float place_8, float sin_radius_1, float sin_pixel) {
+    return clamp((((1.0 - place_8) * (sin_radius_1 / max(sin_pixel, (1e-6 * sin_radius_1)))) + 0.5), 0.0, 1.0);
 }
 
 // Radiance of the sun's disc in a pixel whose centre is `one_minus_cos` from the sun, from the disc's mean radiance: the irradiance on a surface that faces the sun, divided by `pi sin_radius^2`. Without attenuation by air.
@@ -2461,24 +2546,24 @@ vec4 sun_disc_radiance(LimbDarkening limb_1, vec4 mean_radiance, float sin_radiu
 // Reflection of sunlight at a place on the moon's disc, from unit vectors to the moon, from the moon to the sun and along the view: the law of Lommel and Seeliger, `mu_0 / (mu_0 + mu)` with the cosines of incidence and emission; 1/2 where they are equal, 0 outside the disc and on the night side.
 // Cost: no exp.
 float moon_reflection(vec3 moon, vec3 to_sun_1, float sin_radius_3, vec3 direction_14) {
-    bool local_21 = false;
-    bool local_22 = false;
+    bool local_23 = false;
+    bool local_24 = false;
     vec3 apart_1 = (direction_14 - moon);
     vec3 aside = ((apart_1 - (moon * dot(apart_1, moon))) / vec3(sin_radius_3));
     float emission = sqrt(max((1.0 - dot(aside, aside)), 0.0));
     float incidence = (dot(aside, to_sun_1) - (emission * dot(moon, to_sun_1)));
     if (!((emission <= 0.0))) {
-        local_21 = (incidence <= 0.0);
+        local_23 = (incidence <= 0.0);
     } else {
-        local_21 = true;
+        local_23 = true;
     }
-    bool _e28 = local_21;
+    bool _e28 = local_23;
     if (!(_e28)) {
-        local_22 = (dot(direction_14, moon) <= 0.0);
+        local_24 = (dot(direction_14, moon) <= 0.0);
     } else {
-        local_22 = true;
+        local_24 = true;
     }
-    bool _e36 = local_22;
+    bool _e36 = local_24;
     if (_e36) {
         return 0.0;
     }
@@ -2523,8 +2608,8 @@ vec3 camera_tone(vec3 exposed_1, float contrast_1, float saturation) {
 // Cost: 9 exp.
 vec3 agx_response(vec3 x_4) {
     vec3 stops = log2((max(x_4, vec3(1e-9)) / vec3(0.18)));
-    vec3 place_11 = clamp(((stops + vec3(10.0)) / vec3(16.5)), vec3(0.0), vec3(1.0));
-    vec3 from_grey = (place_11 - vec3(0.6060606));
+    vec3 place_12 = clamp(((stops + vec3(10.0)) / vec3(16.5)), vec3(0.0), vec3(1.0));
+    vec3 from_grey = (place_12 - vec3(0.6060606));
     bvec3 is_toe = lessThan(from_grey, vec3(0.0));
     vec3 limit = mix(vec3(0.7151983), vec3(0.5656756), is_toe);
     vec3 u_2 = (2.4 * abs(from_grey));

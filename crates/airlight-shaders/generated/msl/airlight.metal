@@ -134,7 +134,9 @@ struct SkyView {
     float dense_width;
     float even_below;
     float jump_height_m;
-    char _pad13[4];
+    float jump_place;
+    float level_step;
+    char _pad15[12];
     metal::float4 extinction_above;
     metal::float4 smooth_above;
     metal::float4 haze_above;
@@ -189,9 +191,10 @@ constant float SKY_AZIMUTHS = 64.0;
 constant float SKY_ROWS_ABOVE = 125.0;
 constant float SKY_ROWS_BELOW = 35.0;
 constant float AERIAL_AZIMUTHS = 32.0;
+constant float AERIAL_FIRST_COLUMN = 0.4;
 constant float AERIAL_ROWS_ABOVE = 32.0;
 constant float AERIAL_ROWS_BELOW = 32.0;
-constant float AERIAL_DISTANCES = 32.0;
+constant float AERIAL_DISTANCES = 40.0;
 constant float PHASE_ANGLES = 1024.0;
 constant float FOG_AZIMUTHS = 32.0;
 constant float FOG_ROWS = 64.0;
@@ -1691,8 +1694,8 @@ metal::float3 light_at(
     if (ray_15.light.kind == LIGHT_SPOT) {
         float cos_angle_3 = (ray_15.across_m + (place_m_2 * ray_15.along)) / _e4;
         float range = metal::max(ray_15.light.cos_inner - ray_15.light.cos_outer, 0.000001);
-        float part_1 = metal::clamp((cos_angle_3 - ray_15.light.cos_outer) / range, 0.0, 1.0);
-        return metal::float3(part_1 * part_1, _e4, one_minus_cos_10);
+        float part_2 = metal::clamp((cos_angle_3 - ray_15.light.cos_outer) / range, 0.0, 1.0);
+        return metal::float3(part_2 * part_2, _e4, one_minus_cos_10);
     }
     if (ray_15.light.kind == LIGHT_SPHERE) {
         float radius_m_4 = ray_15.light.radius_m;
@@ -1930,8 +1933,8 @@ metal::float3 light_panel_in_exponential_fog(
             float _e151 = forward;
             float t_3 = metal::max(_e150 + (((_e151 * 0.5) * _e147.x) * ((_e147.x + (2.0 * _e119)) / s_1)), 0.0);
             float _e165 = forward;
-            float place_8 = ((_e165 * 0.5) * (s_1 - h_6)) * ((s_1 + h_6) / s_1);
-            metal::float3 _e173 = light_at(ray_17, place_8);
+            float place_9 = ((_e165 * 0.5) * (s_1 - h_6)) * ((s_1 + h_6) / s_1);
+            metal::float3 _e173 = light_at(ray_17, place_9);
             float centre_m_1 = (ray_17.light.kind == LIGHT_SPHERE) ? (_e173.y + ray_17.light.radius_m) : _e173.y;
             float _e185 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_8, t_3, light_height_m_1, centre_m_1, _e173.y);
             float _e192 = decayed(((eye_height_m_1 + (sin_elevation_8 * t_3)) - fog_4.reference_height_m) / fog_4.scale_height_m);
@@ -2251,16 +2254,16 @@ float row_place(
     bool is_below
 ) {
     if (is_below) {
-        float part_2 = (elevation_rad - view_2.horizon_rad) / (-1.5707964 - view_2.horizon_rad);
-        float root_2 = metal::sqrt(metal::sqrt(metal::clamp(part_2, 0.0, 1.0)));
+        float part_3 = (elevation_rad - view_2.horizon_rad) / (-1.5707964 - view_2.horizon_rad);
+        float root_2 = metal::sqrt(metal::sqrt(metal::clamp(part_3, 0.0, 1.0)));
         return root_2 * ((1.0 - view_2.even_below) + (view_2.even_below * root_2));
     }
     if (elevation_rad < view_2.kink_rad) {
-        float part_3 = metal::clamp((elevation_rad - view_2.horizon_rad) / (view_2.kink_rad - view_2.horizon_rad), 0.0, 1.0);
-        return (view_2.kink_place * 0.63661975) * metal::atan2(metal::sqrt(part_3), metal::sqrt(1.0 - part_3));
+        float part_4 = metal::clamp((elevation_rad - view_2.horizon_rad) / (view_2.kink_rad - view_2.horizon_rad), 0.0, 1.0);
+        return (view_2.kink_place * 0.63661975) * metal::atan2(metal::sqrt(part_4), metal::sqrt(1.0 - part_4));
     }
-    float part_4 = metal::clamp((elevation_rad - view_2.kink_rad) / (view_2.highest_rad - view_2.kink_rad), 0.0, 1.0);
-    return view_2.kink_place + ((1.0 - view_2.kink_place) * metal::sqrt(part_4));
+    float part_5 = metal::clamp((elevation_rad - view_2.kink_rad) / (view_2.highest_rad - view_2.kink_rad), 0.0, 1.0);
+    return view_2.kink_place + ((1.0 - view_2.kink_place) * metal::sqrt(part_5));
 }
 
 // Inverse of `row_place`: elevation of a place, rad.
@@ -2280,8 +2283,8 @@ float elevation_from_row_place(
         float sine_6 = metal::sin((1.5707964 * place_3) / view_3.kink_place);
         return view_3.horizon_rad + (((view_3.kink_rad - view_3.horizon_rad) * sine_6) * sine_6);
     }
-    float part_5 = (place_3 - view_3.kink_place) / (1.0 - view_3.kink_place);
-    return view_3.kink_rad + (((view_3.highest_rad - view_3.kink_rad) * part_5) * part_5);
+    float part_6 = (place_3 - view_3.kink_place) / (1.0 - view_3.kink_place);
+    return view_3.kink_rad + (((view_3.highest_rad - view_3.kink_rad) * part_6) * part_6);
 }
 
 // Texture coordinate of an elevation in a table with rows above and below the horizon, at their `row_place`. The first rows hold the elevations from the horizon on; both parts end in texel centres, so that filtering does not mix them.
@@ -2310,8 +2313,8 @@ float elevation_from_row_coordinate(
     float row_2 = coordinate_1 * (rows_above_1 + rows_below_1);
     bool is_below_3 = row_2 >= rows_above_1;
     float rows_1 = is_below_3 ? rows_below_1 : rows_above_1;
-    float place_9 = ((row_2 - (is_below_3 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0);
-    float _e16 = elevation_from_row_place(view_5, place_9, is_below_3);
+    float place_10 = ((row_2 - (is_below_3 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0);
+    float _e16 = elevation_from_row_place(view_5, place_10, is_below_3);
     return _e16;
 }
 
@@ -2377,13 +2380,12 @@ metal::float2 air_span_m(
     return metal::float2(start_4, metal::max(_e50, start_4));
 }
 
-// Part of the way of a ray through the air, up to a length, that is below the jump of density nearest to the eye.
+// Interval of a ray inside the air that is below the jump of density nearest to the eye, m from the eye; (0, 0) if none is.
 // Cost: no exp.
-float share_below_jump(
+metal::float2 below_jump_m(
     SkyView view_9,
     metal::float2 span_m,
     float sin_elevation_10,
-    float length_m_14,
     bool meets_ground_1
 ) {
     bool local_17 = {};
@@ -2398,14 +2400,14 @@ float share_below_jump(
         } else {
             local_18 = true;
         }
-        bool _e34 = local_18;
-        local_17 = _e34;
+        bool _e33 = local_18;
+        local_17 = _e33;
     } else {
         local_17 = false;
     }
-    bool _e36 = local_17;
-    if (_e36) {
-        return 0.0;
+    bool _e35 = local_17;
+    if (_e35) {
+        return metal::float2(0.0);
     }
     float root_5 = metal::sqrt(metal::max(squared_root, 0.0));
     float entry = (over_jump > 0.0) ? (over_jump / (root_5 - b_4)) : 0.0;
@@ -2417,26 +2419,39 @@ float share_below_jump(
             exit = -(over_jump) / (root_5 + b_4);
         }
     }
-    float _e57 = exit;
-    float below_m_1 = metal::min(span_m.x + length_m_14, _e57) - metal::max(span_m.x, entry);
+    float _e55 = exit;
+    return metal::float2(entry, _e55);
+}
+
+// Part of the way of a ray through the air, up to a length, that is below the jump of density nearest to the eye.
+// Cost: no exp.
+float share_below_jump(
+    SkyView view_10,
+    metal::float2 span_m_1,
+    float sin_elevation_11,
+    float length_m_14,
+    bool meets_ground_2
+) {
+    metal::float2 _e5 = below_jump_m(view_10, span_m_1, sin_elevation_11, meets_ground_2);
+    float below_m_1 = metal::min(span_m_1.x + length_m_14, _e5.y) - metal::max(span_m_1.x, _e5.x);
     return metal::clamp(below_m_1 / metal::max(length_m_14, 0.000001), 0.0, 1.0);
 }
 
-// Length of the first step between the distances of a ray with an interval in the air, relative to even steps. From inside the air distances are dense near the eye, at the square of the place: 0; from above it towards the ground, where most air is, dense there: 2. Steep rays from high in the air are between.
+// Length of the first step between the distances of a ray with an interval in the air, relative to even steps. From inside the air distances are dense near the eye, at the square of the place: 0, or a little more where a jump has a place among them; from above it towards the ground, where most air is, dense there: 2. Steep rays from high in the air are between.
 // Cost: no exp.
 float first_step(
-    SkyView view_10,
-    metal::float2 span_m_1,
-    bool meets_ground_2
+    SkyView view_11,
+    metal::float2 span_m_2,
+    bool meets_ground_3
 ) {
-    if (view_10.height_m >= view_10.air_height_m) {
-        return meets_ground_2 ? 2.0 : 1.0;
+    if (view_11.height_m >= view_11.air_height_m) {
+        return meets_ground_3 ? 2.0 : 1.0;
     }
-    if (!(meets_ground_2)) {
-        return 0.0;
+    if (!(meets_ground_3)) {
+        return view_11.level_step;
     }
-    float slant = 1.0 - metal::min(view_10.height_m / metal::max(span_m_1.y, 1.0), 1.0);
-    float high = metal::min((2.5 * view_10.height_m) / view_10.air_height_m, 1.0);
+    float slant = 1.0 - metal::min(view_11.height_m / metal::max(span_m_2.y, 1.0), 1.0);
+    float high = metal::min((2.5 * view_11.height_m) / view_11.air_height_m, 1.0);
     return (2.0 * high) * (1.0 - (((slant * slant) * slant) * slant));
 }
 
@@ -2460,18 +2475,110 @@ float part_from_place(
     return place_4 * (first_step_2 + ((1.0 - first_step_2) * place_4));
 }
 
-// Place from 0 to 1 of a length in the air among the distances of a ray with an interval in the air.
+// Place from 0 to 1 of an azimuth from the sun, in half turns, among the columns of an aerial-perspective table.
+// Cost: no exp.
+float aerial_column_place(
+    SkyView view_12,
+    float azimuth_2
+) {
+    float _e2 = column_place(view_12, azimuth_2);
+    float _e4 = place_from_part(_e2, AERIAL_FIRST_COLUMN);
+    return _e4;
+}
+
+// Part of the way of a ray through the air at which it first crosses the jump of density nearest to the eye; 0 if it does not cross it, or meets the ground.
+// Cost: no exp.
+float part_at_jump(
+    SkyView view_13,
+    metal::float2 span_m_3,
+    float sin_elevation_12,
+    bool meets_ground_4
+) {
+    bool local_19 = {};
+    if (!((view_13.jump_place == 0.0))) {
+        local_19 = meets_ground_4;
+    } else {
+        local_19 = true;
+    }
+    bool _e11 = local_19;
+    if (_e11) {
+        return 0.0;
+    }
+    metal::float2 _e13 = below_jump_m(view_13, span_m_3, sin_elevation_12, meets_ground_4);
+    float crossing = (_e13.x > span_m_3.x) ? _e13.x : _e13.y;
+    return metal::clamp((crossing - span_m_3.x) / metal::max(span_m_3.y - span_m_3.x, 0.000001), 0.0, 1.0);
+}
+
+// Lengths of the first steps between the distances before and behind a jump, as `first_step`, for which the step does not change there along the ray that grazes the jump, or from below along the level one.
+// Cost: no exp.
+metal::float2 steps_at_jump(
+    SkyView view_14
+) {
+    float growth = 1.0 - view_14.level_step;
+    float at_jump = view_14.level_step + ((2.0 * growth) * view_14.jump_place);
+    return metal::float2(view_14.level_step / (view_14.level_step + (growth * view_14.jump_place)), at_jump / (at_jump + (growth * (1.0 - view_14.jump_place))));
+}
+
+// Place from 0 to 1 of a length in the air among the distances of a ray with an interval in the air. Where rays cross a jump of density, so does a distance of the table, as light and extinction bend there.
 // Cost: no exp.
 float distance_place(
-    SkyView view_11,
-    metal::float2 span_m_2,
+    SkyView view_15,
+    metal::float2 span_m_4,
+    float sin_elevation_13,
     float length_m_15,
-    bool meets_ground_3
+    bool meets_ground_5
 ) {
-    float part_6 = metal::clamp(length_m_15 / metal::max(span_m_2.y - span_m_2.x, 0.000001), 0.0, 1.0);
-    float _e13 = first_step(view_11, span_m_2, meets_ground_3);
-    float _e14 = place_from_part(part_6, _e13);
-    return _e14;
+    float part_7 = metal::clamp(length_m_15 / metal::max(span_m_4.y - span_m_4.x, 0.000001), 0.0, 1.0);
+    float _e14 = part_at_jump(view_15, span_m_4, sin_elevation_13, meets_ground_5);
+    if (_e14 == 0.0) {
+        float _e17 = first_step(view_15, span_m_4, meets_ground_5);
+        float _e18 = place_from_part(part_7, _e17);
+        return _e18;
+    }
+    metal::float2 _e19 = steps_at_jump(view_15);
+    if (part_7 < _e14) {
+        float _e24 = place_from_part(part_7 / _e14, _e19.x);
+        return view_15.jump_place * _e24;
+    }
+    float behind = metal::clamp((part_7 - _e14) / metal::max(1.0 - _e14, 0.000001), 0.0, 1.0);
+    float _e37 = place_from_part(behind, _e19.y);
+    return metal::mix(view_15.jump_place, 1.0, _e37);
+}
+
+// Inverse of `distance_place`: length in the air, m.
+// Cost: no exp.
+float length_from_distance_place(
+    SkyView view_16,
+    metal::float2 span_m_5,
+    float sin_elevation_14,
+    float place_5,
+    bool meets_ground_6
+) {
+    float part_1 = {};
+    bool local_20 = {};
+    float _e5 = part_at_jump(view_16, span_m_5, sin_elevation_14, meets_ground_6);
+    float _e6 = first_step(view_16, span_m_5, meets_ground_6);
+    float _e7 = part_from_place(place_5, _e6);
+    part_1 = _e7;
+    if (_e5 > 0.0) {
+        local_20 = place_5 < view_16.jump_place;
+    } else {
+        local_20 = false;
+    }
+    bool _e16 = local_20;
+    if (_e16) {
+        metal::float2 _e19 = steps_at_jump(view_16);
+        float _e21 = part_from_place(place_5 / view_16.jump_place, _e19.x);
+        part_1 = _e5 * _e21;
+    } else {
+        if (_e5 > 0.0) {
+            metal::float2 _e31 = steps_at_jump(view_16);
+            float _e33 = part_from_place((place_5 - view_16.jump_place) / (1.0 - view_16.jump_place), _e31.y);
+            part_1 = metal::mix(_e5, 1.0, _e33);
+        }
+    }
+    float _e36 = part_1;
+    return _e36 * (span_m_5.y - span_m_5.x);
 }
 
 // Place from 0 to 1 of a scattering angle in a table of phase functions, dense forwards, by 1 minus the cosine.
@@ -2486,9 +2593,9 @@ float phase_place(
 // Inverse of `phase_place`.
 // Cost: no exp.
 float one_minus_cos_from_phase_place(
-    float place_5
+    float place_6
 ) {
-    float half_sine = metal::sin((1.5707964 * place_5) * place_5);
+    float half_sine = metal::sin((1.5707964 * place_6) * place_6);
     return (2.0 * half_sine) * half_sine;
 }
 
@@ -2508,7 +2615,7 @@ metal::float4 haze_phase(
 // Radiance of the sky, or of the ground below the horizon, along a direction at four wavelengths, without the sun's disc.
 // Cost: 8 exp, 3 reads.
 metal::float4 sky_radiance(
-    SkyView view_12,
+    SkyView view_17,
     SkyScales scales,
     metal::texture2d<float, metal::access::sample> smooth_table,
     metal::texture2d<float, metal::access::sample> haze_table,
@@ -2517,11 +2624,11 @@ metal::float4 sky_radiance(
     metal::float3 direction_8
 ) {
     float _e7 = elevation_of(direction_8);
-    if (_e7 > view_12.highest_rad) {
+    if (_e7 > view_17.highest_rad) {
         return metal::float4(0.0);
     }
-    metal::float2 _e12 = uv_from_direction(view_12, direction_8);
-    float _e14 = one_minus_cos_between(direction_8, view_12.sun);
+    metal::float2 _e12 = uv_from_direction(view_17, direction_8);
+    float _e14 = one_minus_cos_between(direction_8, view_17.sun);
     metal::float4 _e15 = haze_phase(phase_table_1, linear_sampler_1, _e14);
     metal::float4 _e17 = smooth_table.sample(linear_sampler_1, _e12, metal::level(0.0));
     metal::float4 smooth_light_1 = metal::exp(_e17) * scales.smooth_light;
@@ -2533,7 +2640,7 @@ metal::float4 sky_radiance(
 // Air between the eye and a point at a distance along a direction, at four wavelengths. The extinction table holds the mean extinction from the first air on, 1/km, as if all of it were below the jump of density nearest to the eye.
 // Cost: 12 exp, 4 reads.
 SpectralPath aerial_perspective(
-    SkyView view_13,
+    SkyView view_18,
     SkyScales scales_1,
     metal::texture3d<float, metal::access::sample> smooth_table_1,
     metal::texture3d<float, metal::access::sample> haze_table_1,
@@ -2543,82 +2650,82 @@ SpectralPath aerial_perspective(
     metal::float3 direction_9,
     float distance_m_1
 ) {
-    bool local_19 = {};
+    bool local_21 = {};
     metal::float4 smooth_light = {};
     metal::float4 haze = {};
     float _e9 = elevation_of(direction_9);
-    bool is_below_5 = _e9 < view_13.horizon_rad;
-    metal::float2 _e13 = air_span_m(view_13, direction_9.y, is_below_5);
+    bool is_below_5 = _e9 < view_18.horizon_rad;
+    metal::float2 _e13 = air_span_m(view_18, direction_9.y, is_below_5);
     float length_m_17 = metal::min(distance_m_1, _e13.y) - _e13.x;
     if (!((length_m_17 <= 0.0))) {
-        local_19 = _e9 > view_13.highest_rad;
+        local_21 = _e9 > view_18.highest_rad;
     } else {
-        local_19 = true;
+        local_21 = true;
     }
-    bool _e26 = local_19;
+    bool _e26 = local_21;
     if (_e26) {
         return SpectralPath {metal::float4(1.0), metal::float4(0.0)};
     }
-    float _e33 = share_below_jump(view_13, _e13, direction_9.y, length_m_17, is_below_5);
-    metal::float4 extinction_2 = metal::mix(view_13.extinction_above, metal::float4(1.0), _e33);
-    float _e38 = distance_place(view_13, _e13, length_m_17, is_below_5);
-    float _e41 = row_coordinate(view_13, _e9, is_below_5, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
-    float _e43 = azimuth_place(direction_9, view_13.sun);
-    float _e44 = column_place(view_13, _e43);
-    float _e46 = texel_coordinate(_e44, AERIAL_AZIMUTHS);
-    float _e48 = texel_coordinate(_e38, AERIAL_DISTANCES);
-    metal::float3 uvw = metal::float3(_e46, _e41, _e48);
-    float _e51 = one_minus_cos_between(direction_9, view_13.sun);
-    metal::float4 _e52 = haze_phase(phase_table_2, linear_sampler_2, _e51);
-    metal::float4 _e55 = extinction_table.sample(linear_sampler_2, uvw.zy, metal::level(0.0));
-    metal::float4 depth_5 = (_e55 * extinction_2) * (length_m_17 * 0.001);
-    metal::float4 _e61 = smooth_table_1.sample(linear_sampler_2, uvw, metal::level(0.0));
-    smooth_light = metal::exp(_e61) * scales_1.smooth_light;
-    metal::float4 _e67 = haze_table_1.sample(linear_sampler_2, uvw, metal::level(0.0));
-    haze = metal::exp(_e67) * scales_1.haze;
-    metal::float4 _e72 = smooth_light;
-    smooth_light = _e72 * metal::mix(view_13.smooth_above, metal::float4(1.0), _e33);
-    metal::float4 _e78 = haze;
-    haze = _e78 * metal::mix(view_13.haze_above, metal::float4(1.0), _e33);
-    metal::float3 _e85 = mean_transmittance_rgb(depth_5.xyz);
-    float _e87 = mean_transmittance(depth_5.w);
-    metal::float4 opacity_2 = depth_5 * metal::float4(_e85, _e87);
-    metal::float4 _e93 = smooth_light;
-    metal::float4 _e94 = haze;
-    return SpectralPath {metal::float4(1.0) - opacity_2, ((_e93 + (_e94 * _e52)) / extinction_2) * opacity_2};
+    float _e33 = share_below_jump(view_18, _e13, direction_9.y, length_m_17, is_below_5);
+    metal::float4 extinction_2 = metal::mix(view_18.extinction_above, metal::float4(1.0), _e33);
+    float _e39 = distance_place(view_18, _e13, direction_9.y, length_m_17, is_below_5);
+    float _e42 = row_coordinate(view_18, _e9, is_below_5, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    float _e44 = azimuth_place(direction_9, view_18.sun);
+    float _e45 = aerial_column_place(view_18, _e44);
+    float _e47 = texel_coordinate(_e45, AERIAL_AZIMUTHS);
+    float _e49 = texel_coordinate(_e39, AERIAL_DISTANCES);
+    metal::float3 uvw = metal::float3(_e47, _e42, _e49);
+    float _e52 = one_minus_cos_between(direction_9, view_18.sun);
+    metal::float4 _e53 = haze_phase(phase_table_2, linear_sampler_2, _e52);
+    metal::float4 _e56 = extinction_table.sample(linear_sampler_2, uvw.zy, metal::level(0.0));
+    metal::float4 depth_5 = (_e56 * extinction_2) * (length_m_17 * 0.001);
+    metal::float4 _e62 = smooth_table_1.sample(linear_sampler_2, uvw, metal::level(0.0));
+    smooth_light = metal::exp(_e62) * scales_1.smooth_light;
+    metal::float4 _e68 = haze_table_1.sample(linear_sampler_2, uvw, metal::level(0.0));
+    haze = metal::exp(_e68) * scales_1.haze;
+    metal::float4 _e73 = smooth_light;
+    smooth_light = _e73 * metal::mix(view_18.smooth_above, metal::float4(1.0), _e33);
+    metal::float4 _e79 = haze;
+    haze = _e79 * metal::mix(view_18.haze_above, metal::float4(1.0), _e33);
+    metal::float3 _e86 = mean_transmittance_rgb(depth_5.xyz);
+    float _e88 = mean_transmittance(depth_5.w);
+    metal::float4 opacity_2 = depth_5 * metal::float4(_e86, _e88);
+    metal::float4 _e94 = smooth_light;
+    metal::float4 _e95 = haze;
+    return SpectralPath {metal::float4(1.0) - opacity_2, ((_e94 + (_e95 * _e53)) / extinction_2) * opacity_2};
 }
 
 // Transmittance of the air between the eye and a point at a distance along a direction, at four wavelengths: that of `aerial_perspective` alone.
 // Cost: 4 exp, 1 read.
 metal::float4 aerial_transmittance(
-    SkyView view_14,
+    SkyView view_19,
     metal::texture2d<float, metal::access::sample> extinction_table_1,
     metal::sampler linear_sampler_3,
     metal::float3 direction_10,
     float distance_m_2
 ) {
-    bool local_20 = {};
+    bool local_22 = {};
     float _e5 = elevation_of(direction_10);
-    bool is_below_6 = _e5 < view_14.horizon_rad;
-    metal::float2 _e9 = air_span_m(view_14, direction_10.y, is_below_6);
+    bool is_below_6 = _e5 < view_19.horizon_rad;
+    metal::float2 _e9 = air_span_m(view_19, direction_10.y, is_below_6);
     float length_m_18 = metal::min(distance_m_2, _e9.y) - _e9.x;
     if (!((length_m_18 <= 0.0))) {
-        local_20 = _e5 > view_14.highest_rad;
+        local_22 = _e5 > view_19.highest_rad;
     } else {
-        local_20 = true;
+        local_22 = true;
     }
-    bool _e22 = local_20;
+    bool _e22 = local_22;
     if (_e22) {
         return metal::float4(1.0);
     }
-    float _e26 = share_below_jump(view_14, _e9, direction_10.y, length_m_18, is_below_6);
-    metal::float4 extinction_3 = metal::mix(view_14.extinction_above, metal::float4(1.0), _e26);
-    float _e31 = distance_place(view_14, _e9, length_m_18, is_below_6);
-    float _e34 = row_coordinate(view_14, _e5, is_below_6, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
-    float _e36 = texel_coordinate(_e31, AERIAL_DISTANCES);
-    metal::float2 uv = metal::float2(_e36, _e34);
-    metal::float4 _e39 = extinction_table_1.sample(linear_sampler_3, uv, metal::level(0.0));
-    return metal::exp((_e39 * extinction_3) * (length_m_18 * -0.001));
+    float _e26 = share_below_jump(view_19, _e9, direction_10.y, length_m_18, is_below_6);
+    metal::float4 extinction_3 = metal::mix(view_19.extinction_above, metal::float4(1.0), _e26);
+    float _e32 = distance_place(view_19, _e9, direction_10.y, length_m_18, is_below_6);
+    float _e35 = row_coordinate(view_19, _e5, is_below_6, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    float _e37 = texel_coordinate(_e32, AERIAL_DISTANCES);
+    metal::float2 uv = metal::float2(_e37, _e35);
+    metal::float4 _e40 = extinction_table_1.sample(linear_sampler_3, uv, metal::level(0.0));
+    return metal::exp((_e40 * extinction_3) * (length_m_18 * -0.001));
 }
 
 // Transmittance and path radiance in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
@@ -2647,11 +2754,11 @@ float fog_row_place(
 // Texture coordinate of the rows of a direction: falling rays come first.
 // Cost: 2 exp.
 float fog_row_coordinate(
-    FogTableView view_15,
+    FogTableView view_20,
     metal::float3 direction_11
 ) {
     bool is_above = direction_11.y > 0.0;
-    float per_sine_1 = is_above ? view_15.above_per_sine : view_15.below_per_sine;
+    float per_sine_1 = is_above ? view_20.above_per_sine : view_20.below_per_sine;
     float _e10 = elevation_of(direction_11);
     float _e12 = fog_row_place(per_sine_1, metal::abs(direction_11.y), metal::abs(_e10));
     return (((is_above ? FOG_ROWS : 0.0) + 0.5) + (_e12 * 63.0)) / 128.0;
@@ -2660,10 +2767,10 @@ float fog_row_coordinate(
 // Texture coordinate in stacked tables from that in the table of the layer.
 // Cost: no exp.
 float fog_stacked_coordinate(
-    FogTableView view_16,
+    FogTableView view_21,
     float coordinate_2
 ) {
-    return (view_16.layer + coordinate_2) / view_16.layer_count;
+    return (view_21.layer + coordinate_2) / view_21.layer_count;
 }
 
 // Opacity of an optical depth: 1 minus the transmittance, without cancellation.
@@ -2678,13 +2785,13 @@ metal::float3 fog_opacity(
 // Place of a distance, 0 to 1, from the opacity and the transmittance up to there, relative to those of the whole ray to the ground or through the fog.
 // Cost: 6 exp.
 float fog_distance_place(
-    FogTableView view_17,
-    float sin_elevation_11,
+    FogTableView view_22,
+    float sin_elevation_15,
     metal::float3 opacity,
     metal::float3 transmittance_1
 ) {
-    metal::float3 vertical = (sin_elevation_11 > 0.0) ? view_17.depth_above : view_17.depth_below;
-    metal::float3 depth_6 = metal::min(vertical / metal::float3(metal::max(metal::abs(sin_elevation_11), 0.0000000001)), metal::float3(10000000000000000000000000.0));
+    metal::float3 vertical = (sin_elevation_15 > 0.0) ? view_22.depth_above : view_22.depth_below;
+    metal::float3 depth_6 = metal::min(vertical / metal::float3(metal::max(metal::abs(sin_elevation_15), 0.0000000001)), metal::float3(10000000000000000000000000.0));
     metal::float3 _e17 = fog_opacity(depth_6);
     float whole = metal::dot(_e17, metal::float3(1.0));
     float thin = whole - metal::dot(opacity, metal::float3(1.0));
@@ -2696,26 +2803,26 @@ float fog_distance_place(
 // Sunlight that is scattered once with a phase function, by its index, in a stream (0, 1 or 2), per unit of opacity, before its scale: from the texture coordinates of distance, row and angle.
 // Cost: 3 exp, 2 reads.
 metal::float3 fog_stream_light(
-    FogTableView view_18,
+    FogTableView view_23,
     metal::texture3d<float, metal::access::sample> stream_table,
     metal::texture2d<float, metal::access::sample> stream_phase_table,
     metal::sampler linear_sampler_4,
-    metal::float3 place_6,
+    metal::float3 place_7,
     float phase_1,
     float stream
 ) {
-    float slice = (((3.0 * phase_1) + stream) + 0.5) / (3.0 * view_18.phase_count);
-    float _e17 = fog_stacked_coordinate(view_18, slice);
-    metal::float3 uvw_1 = metal::float3(place_6.xy, _e17);
+    float slice = (((3.0 * phase_1) + stream) + 0.5) / (3.0 * view_23.phase_count);
+    float _e17 = fog_stacked_coordinate(view_23, slice);
+    metal::float3 uvw_1 = metal::float3(place_7.xy, _e17);
     metal::float4 logarithms = stream_table.sample(linear_sampler_4, uvw_1, metal::level(0.0));
-    metal::float4 scattered_2 = stream_phase_table.sample(linear_sampler_4, metal::float2(place_6.z, slice), metal::level(0.0));
+    metal::float4 scattered_2 = stream_phase_table.sample(linear_sampler_4, metal::float2(place_7.z, slice), metal::level(0.0));
     return metal::exp(logarithms.xyz) * scattered_2.xyz;
 }
 
 // A layer of fog between the eye and a point, by its optical depth on the way: extinction times `exponential_column_m`, or the column of another profile. Rays end at the ground. Of several layers, transmittances multiply and path radiances add up. A step is a phase function of the fog.
 // Cost: 14 exp, 9 exp a step, 1 read, 6 reads a step.
 PathOptics tabulated_fog(
-    FogTableView view_19,
+    FogTableView view_24,
     metal::texture3d<float, metal::access::sample> diffuse_table,
     metal::texture3d<float, metal::access::sample> stream_table_1,
     metal::texture2d<float, metal::access::sample> stream_phase_table_1,
@@ -2727,19 +2834,19 @@ PathOptics tabulated_fog(
     float phase_2 = 0.0;
     metal::float3 _e7 = fog_opacity(optical_depth_2);
     metal::float3 transmittance_3 = metal::exp(-(optical_depth_2));
-    float _e11 = azimuth_place(direction_12, view_19.sun);
+    float _e11 = azimuth_place(direction_12, view_24.sun);
     float _e13 = texel_coordinate(_e11, FOG_AZIMUTHS);
-    float _e14 = fog_row_coordinate(view_19, direction_12);
-    float _e16 = fog_distance_place(view_19, direction_12.y, _e7, transmittance_3);
+    float _e14 = fog_row_coordinate(view_24, direction_12);
+    float _e16 = fog_distance_place(view_24, direction_12.y, _e7, transmittance_3);
     float _e18 = texel_coordinate(_e16, FOG_DISTANCES);
-    float _e19 = fog_stacked_coordinate(view_19, _e18);
+    float _e19 = fog_stacked_coordinate(view_24, _e18);
     metal::float3 uvw_2 = metal::float3(_e13, _e14, _e19);
     metal::float4 _e22 = diffuse_table.sample(linear_sampler_5, uvw_2, metal::level(0.0));
     metal::float3 diffuse = _e22.xyz;
-    float _e25 = one_minus_cos_between(direction_12, view_19.sun);
+    float _e25 = one_minus_cos_between(direction_12, view_24.sun);
     float _e26 = phase_place(_e25);
     float _e28 = texel_coordinate(_e26, PHASE_ANGLES);
-    metal::float3 place_10 = metal::float3(_e18, _e14, _e28);
+    metal::float3 place_11 = metal::float3(_e18, _e14, _e28);
     bool loop_init_12 = true;
     while(true) {
         if (!loop_init_12) {
@@ -2748,23 +2855,23 @@ PathOptics tabulated_fog(
         }
         loop_init_12 = false;
         float _e35 = phase_2;
-        if (_e35 < view_19.phase_count) {
+        if (_e35 < view_24.phase_count) {
         } else {
             break;
         }
         {
             metal::float3 _e38 = sunlit_1;
             float _e39 = phase_2;
-            metal::float3 _e41 = fog_stream_light(view_19, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e39, 0.0);
+            metal::float3 _e41 = fog_stream_light(view_24, stream_table_1, stream_phase_table_1, linear_sampler_5, place_11, _e39, 0.0);
             float _e42 = phase_2;
-            metal::float3 _e44 = fog_stream_light(view_19, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e42, 1.0);
+            metal::float3 _e44 = fog_stream_light(view_24, stream_table_1, stream_phase_table_1, linear_sampler_5, place_11, _e42, 1.0);
             float _e46 = phase_2;
-            metal::float3 _e48 = fog_stream_light(view_19, stream_table_1, stream_phase_table_1, linear_sampler_5, place_10, _e46, 2.0);
+            metal::float3 _e48 = fog_stream_light(view_24, stream_table_1, stream_phase_table_1, linear_sampler_5, place_11, _e46, 2.0);
             sunlit_1 = _e38 + ((_e41 + _e44) + _e48);
         }
     }
     metal::float3 _e57 = sunlit_1;
-    metal::float3 source_1 = (view_19.diffuse_scale * diffuse) + (view_19.sunlit_scale * metal::max(_e57, metal::float3(0.0)));
+    metal::float3 source_1 = (view_24.diffuse_scale * diffuse) + (view_24.sunlit_scale * metal::max(_e57, metal::float3(0.0)));
     return PathOptics {transmittance_3, _e7 * source_1};
 }
 
@@ -2885,13 +2992,13 @@ ArticleSky article_sky(
 metal::float3 article_source(
     ArticleSky sky,
     metal::float3 position_7,
-    metal::float3 view_20,
+    metal::float3 view_25,
     metal::float3 sun_1
 ) {
     float _e5 = article_distance_m(position_7, sun_1, ARTICLE_TOP_RADIUS_M);
     metal::float3 leaves = position_7 + (sun_1 * _e5);
     metal::float3 _e8 = article_transmittance(position_7, leaves);
-    float mu_3 = metal::dot(view_20, sun_1);
+    float mu_3 = metal::dot(view_25, sun_1);
     metal::float3 _e10 = article_sigma_rayleigh(position_7);
     float _e11 = article_rayleigh_phase(mu_3);
     metal::float3 rayleigh = _e10 * _e11;
@@ -2905,13 +3012,13 @@ metal::float3 article_source(
 // Cost: 15 exp a step; 8 steps, in each of which two marches of 8 steps take 6 of these, 456 in all.
 metal::float3 article_luminance(
     ArticleSky sky_1,
-    metal::float3 view_21,
+    metal::float3 view_26,
     metal::float3 sun_2
 ) {
     metal::float3 sum_6 = metal::float3(0.0);
     int i_13 = 0;
-    float _e6 = article_distance_m(sky_1.eye, view_21, ARTICLE_TOP_RADIUS_M);
-    metal::float3 leaves_1 = sky_1.eye + (view_21 * _e6);
+    float _e6 = article_distance_m(sky_1.eye, view_26, ARTICLE_TOP_RADIUS_M);
+    metal::float3 leaves_1 = sky_1.eye + (view_26 * _e6);
     metal::float3 ds_1 = (leaves_1 - sky_1.eye) / metal::float3(8.0);
     metal::float3 direction_15 = ds_1 / metal::float3(metal::length(ds_1));
     bool loop_init_14 = true;
@@ -2943,13 +3050,13 @@ metal::float3 article_luminance(
 // Cost: 3 exp, 3 exp a step; 8 steps.
 metal::float3 article_disc(
     ArticleSky sky_2,
-    metal::float3 view_22,
+    metal::float3 view_27,
     metal::float3 sun_3
 ) {
-    float angle = metal::acos(metal::min(metal::dot(view_22, sun_3), 1.0));
+    float angle = metal::acos(metal::min(metal::dot(view_27, sun_3), 1.0));
     float disc = 1.0 - metal::smoothstep(0.95 * sky_2.sun_radius_rad, 1.05 * sky_2.sun_radius_rad, angle);
-    float _e19 = article_distance_m(sky_2.eye, view_22, ARTICLE_TOP_RADIUS_M);
-    metal::float3 leaves_2 = sky_2.eye + (view_22 * _e19);
+    float _e19 = article_distance_m(sky_2.eye, view_27, ARTICLE_TOP_RADIUS_M);
+    metal::float3 leaves_2 = sky_2.eye + (view_27 * _e19);
     metal::float3 _e25 = article_transmittance(sky_2.eye, leaves_2);
     return (sky_2.outer_space * disc) * _e25;
 }
@@ -2992,11 +3099,11 @@ float place_on_disc(
 // Part of a pixel that the disc covers, 0 to 1: a ramp as wide as a pixel across the edge, so that the edge is smooth and the disc's light is kept, within `(pixel / radius)^2 / 12`. `sin_pixel` is the sine of the angle that a pixel spans; 0 gives a sharp edge.
 // Cost: no exp.
 float disc_coverage(
-    float place_7,
+    float place_8,
     float sin_radius_1,
     float sin_pixel
 ) {
-    return metal::clamp(((1.0 - place_7) * (sin_radius_1 / metal::max(sin_pixel, 0.000001 * sin_radius_1))) + 0.5, 0.0, 1.0);
+    return metal::clamp(((1.0 - place_8) * (sin_radius_1 / metal::max(sin_pixel, 0.000001 * sin_radius_1))) + 0.5, 0.0, 1.0);
 }
 
 // Radiance of the sun's disc in a pixel whose centre is `one_minus_cos` from the sun, from the disc's mean radiance: the irradiance on a surface that faces the sun, divided by `pi sin_radius^2`. Without attenuation by air.
@@ -3023,24 +3130,24 @@ float moon_reflection(
     float sin_radius_3,
     metal::float3 direction_14
 ) {
-    bool local_21 = {};
-    bool local_22 = {};
+    bool local_23 = {};
+    bool local_24 = {};
     metal::float3 apart_1 = direction_14 - moon;
     metal::float3 aside = (apart_1 - (moon * metal::dot(apart_1, moon))) / metal::float3(sin_radius_3);
     float emission = metal::sqrt(metal::max(1.0 - metal::dot(aside, aside), 0.0));
     float incidence = metal::dot(aside, to_sun_1) - (emission * metal::dot(moon, to_sun_1));
     if (!((emission <= 0.0))) {
-        local_21 = incidence <= 0.0;
+        local_23 = incidence <= 0.0;
     } else {
-        local_21 = true;
+        local_23 = true;
     }
-    bool _e28 = local_21;
+    bool _e28 = local_23;
     if (!(_e28)) {
-        local_22 = metal::dot(direction_14, moon) <= 0.0;
+        local_24 = metal::dot(direction_14, moon) <= 0.0;
     } else {
-        local_22 = true;
+        local_24 = true;
     }
-    bool _e36 = local_22;
+    bool _e36 = local_24;
     if (_e36) {
         return 0.0;
     }
@@ -3096,8 +3203,8 @@ metal::float3 agx_response(
     metal::float3 x_4
 ) {
     metal::float3 stops = metal::log2(metal::max(x_4, metal::float3(0.000000001)) / metal::float3(0.18));
-    metal::float3 place_11 = metal::clamp((stops + metal::float3(10.0)) / metal::float3(16.5), metal::float3(0.0), metal::float3(1.0));
-    metal::float3 from_grey = place_11 - metal::float3(0.6060606);
+    metal::float3 place_12 = metal::clamp((stops + metal::float3(10.0)) / metal::float3(16.5), metal::float3(0.0), metal::float3(1.0));
+    metal::float3 from_grey = place_12 - metal::float3(0.6060606);
     metal::bool3 is_toe = from_grey < metal::float3(0.0);
     metal::float3 limit = metal::select(metal::float3(0.7151983), metal::float3(0.5656756), is_toe);
     metal::float3 u_2 = 2.4 * metal::abs(from_grey);

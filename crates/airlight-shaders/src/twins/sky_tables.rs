@@ -5,7 +5,7 @@ use super::exponentials::{mean_transmittance, mean_transmittance_rgb};
 use super::path_optics::PathOptics;
 use super::phase::one_minus_cos_between;
 use super::texture::{LinearSampler, Texture2d, Texture3d};
-use glam::{Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
+use glam::{FloatExt, Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 use std::f32::consts::{FRAC_1_PI, FRAC_2_PI, FRAC_PI_2, PI};
 
 /// Columns of a sky table, from the azimuth of the sun to the opposite one.
@@ -16,12 +16,14 @@ pub const SKY_ROWS_ABOVE: f32 = 125.0;
 pub const SKY_ROWS_BELOW: f32 = 35.0;
 /// Columns of an aerial-perspective table.
 pub const AERIAL_AZIMUTHS: f32 = 32.0;
+/// Width of the first of these columns relative to even ones.
+pub const AERIAL_FIRST_COLUMN: f32 = 0.4;
 /// Rows of an aerial-perspective table from the horizon to the highest elevation; they come first.
 pub const AERIAL_ROWS_ABOVE: f32 = 32.0;
 /// Rows of an aerial-perspective table from the horizon to the nadir.
 pub const AERIAL_ROWS_BELOW: f32 = 32.0;
 /// Distances of an aerial-perspective table.
-pub const AERIAL_DISTANCES: f32 = 32.0;
+pub const AERIAL_DISTANCES: f32 = 40.0;
 /// Angles of a table of phase functions.
 pub const PHASE_ANGLES: f32 = 1024.0;
 
@@ -55,6 +57,11 @@ pub struct SkyView {
     pub even_below: f32,
     /// Height above the ground of the jump of density that is nearest to the eye, m.
     pub jump_height_m: f32,
+    /// Place among the distances of an aerial-perspective table at which rays that do not meet the ground first cross that jump, 0 to 1; 0
+    /// without a jump, and for an eye above the air.
+    pub jump_place: f32,
+    /// Length of the first step between the distances of such rays, relative to even steps, from inside the air.
+    pub level_step: f32,
     /// Extinction just above that jump relative to that just below it; 1 without a jump.
     pub extinction_above: Vec4,
     /// Smooth light that a metre of air scatters just above that jump relative to one just below it; 1 without a jump.
@@ -255,20 +262,14 @@ pub fn air_span_m(view: SkyView, sin_elevation: f32, meets_ground: bool) -> Vec2
     Vec2::new(start, end.max(start))
 }
 
-/// Part of the way of a ray through the air, up to a length, that is below the jump of density nearest to the eye.
-pub fn share_below_jump(
-    view: SkyView,
-    span_m: Vec2,
-    sin_elevation: f32,
-    length_m: f32,
-    meets_ground: bool,
-) -> f32 {
+/// Interval of a ray inside the air that is below the jump of density nearest to the eye, m from the eye; (0, 0) if none is.
+pub fn below_jump_m(view: SkyView, span_m: Vec2, sin_elevation: f32, meets_ground: bool) -> Vec2 {
     let b = (view.ground_radius_m + view.height_m) * sin_elevation;
     let over_jump = (view.height_m - view.jump_height_m)
         * (2.0 * view.ground_radius_m + view.height_m + view.jump_height_m);
     let squared_root = b * b - over_jump;
     if over_jump > 0.0 && (b >= 0.0 || squared_root <= 0.0) {
-        return 0.0;
+        return Vec2::ZERO;
     }
     let root = squared_root.max(0.0).sqrt();
     let entry = match over_jump > 0.0 {
@@ -281,7 +282,19 @@ pub fn share_below_jump(
     } else if b > 0.0 {
         exit = -over_jump / (root + b);
     }
-    let below_m = (span_m.x + length_m).min(exit) - span_m.x.max(entry);
+    Vec2::new(entry, exit)
+}
+
+/// Part of the way of a ray through the air, up to a length, that is below the jump of density nearest to the eye.
+pub fn share_below_jump(
+    view: SkyView,
+    span_m: Vec2,
+    sin_elevation: f32,
+    length_m: f32,
+    meets_ground: bool,
+) -> f32 {
+    let below = below_jump_m(view, span_m, sin_elevation, meets_ground);
+    let below_m = (span_m.x + length_m).min(below.y) - span_m.x.max(below.x);
     (below_m / length_m.max(1e-6)).clamp(0.0, 1.0)
 }
 
@@ -292,7 +305,7 @@ pub fn first_step(view: SkyView, span_m: Vec2, meets_ground: bool) -> f32 {
         return if meets_ground { 2.0 } else { 1.0 };
     }
     if !meets_ground {
-        return 0.0;
+        return view.level_step;
     }
     let slant = 1.0 - (view.height_m / span_m.y.max(1.0)).min(1.0);
     let high = (2.5 * view.height_m / view.air_height_m).min(1.0);
@@ -311,10 +324,73 @@ pub fn part_from_place(place: f32, first_step: f32) -> f32 {
     place * (first_step + (1.0 - first_step) * place)
 }
 
+/// Place from 0 to 1 of an azimuth from the sun, in half turns, among the columns of an aerial-perspective table.
+pub fn aerial_column_place(view: SkyView, azimuth: f32) -> f32 {
+    place_from_part(column_place(view, azimuth), AERIAL_FIRST_COLUMN)
+}
+
+/// Part of the way of a ray through the air at which it first crosses the jump of density nearest to the eye; 0 if it does not cross it, or
+/// meets the ground.
+pub fn part_at_jump(view: SkyView, span_m: Vec2, sin_elevation: f32, meets_ground: bool) -> f32 {
+    if view.jump_place == 0.0 || meets_ground {
+        return 0.0;
+    }
+    let below = below_jump_m(view, span_m, sin_elevation, meets_ground);
+    let crossing = match below.x > span_m.x {
+        true => below.x,
+        false => below.y,
+    };
+    ((crossing - span_m.x) / (span_m.y - span_m.x).max(1e-6)).clamp(0.0, 1.0)
+}
+
+/// Lengths of the first steps between the distances before and behind a jump, as [`first_step`].
+pub fn steps_at_jump(view: SkyView) -> Vec2 {
+    let growth = 1.0 - view.level_step;
+    let at_jump = view.level_step + 2.0 * growth * view.jump_place;
+    Vec2::new(
+        view.level_step / (view.level_step + growth * view.jump_place),
+        at_jump / (at_jump + growth * (1.0 - view.jump_place)),
+    )
+}
+
 /// Place from 0 to 1 of a length in the air among the distances of a ray with an interval in the air.
-pub fn distance_place(view: SkyView, span_m: Vec2, length_m: f32, meets_ground: bool) -> f32 {
+pub fn distance_place(
+    view: SkyView,
+    span_m: Vec2,
+    sin_elevation: f32,
+    length_m: f32,
+    meets_ground: bool,
+) -> f32 {
     let part = (length_m / (span_m.y - span_m.x).max(1e-6)).clamp(0.0, 1.0);
-    place_from_part(part, first_step(view, span_m, meets_ground))
+    let at_jump = part_at_jump(view, span_m, sin_elevation, meets_ground);
+    if at_jump == 0.0 {
+        return place_from_part(part, first_step(view, span_m, meets_ground));
+    }
+    let steps = steps_at_jump(view);
+    if part < at_jump {
+        return view.jump_place * place_from_part(part / at_jump, steps.x);
+    }
+    let behind = ((part - at_jump) / (1.0 - at_jump).max(1e-6)).clamp(0.0, 1.0);
+    view.jump_place.lerp(1.0, place_from_part(behind, steps.y))
+}
+
+/// Inverse of [`distance_place`]: length in the air, m.
+pub fn length_from_distance_place(
+    view: SkyView,
+    span_m: Vec2,
+    sin_elevation: f32,
+    place: f32,
+    meets_ground: bool,
+) -> f32 {
+    let at_jump = part_at_jump(view, span_m, sin_elevation, meets_ground);
+    let mut part = part_from_place(place, first_step(view, span_m, meets_ground));
+    if at_jump > 0.0 && place < view.jump_place {
+        part = at_jump * part_from_place(place / view.jump_place, steps_at_jump(view).x);
+    } else if at_jump > 0.0 {
+        let behind = (place - view.jump_place) / (1.0 - view.jump_place);
+        part = at_jump.lerp(1.0, part_from_place(behind, steps_at_jump(view).y));
+    }
+    part * (span_m.y - span_m.x)
 }
 
 /// Place from 0 to 1 of a scattering angle in a table of phase functions.
@@ -391,7 +467,7 @@ pub fn aerial_perspective(
     }
     let share = share_below_jump(view, span, direction.y, length_m, is_below);
     let extinction = view.extinction_above.lerp(Vec4::ONE, share);
-    let place = distance_place(view, span, length_m, is_below);
+    let place = distance_place(view, span, direction.y, length_m, is_below);
     let row = row_coordinate(
         view,
         elevation_rad,
@@ -401,7 +477,7 @@ pub fn aerial_perspective(
     );
     let azimuth = azimuth_place(direction, view.sun);
     let uvw = Vec3::new(
-        texel_coordinate(column_place(view, azimuth), AERIAL_AZIMUTHS),
+        texel_coordinate(aerial_column_place(view, azimuth), AERIAL_AZIMUTHS),
         row,
         texel_coordinate(place, AERIAL_DISTANCES),
     );
@@ -437,7 +513,7 @@ pub fn aerial_transmittance(
     }
     let share = share_below_jump(view, span, direction.y, length_m, is_below);
     let extinction = view.extinction_above.lerp(Vec4::ONE, share);
-    let place = distance_place(view, span, length_m, is_below);
+    let place = distance_place(view, span, direction.y, length_m, is_below);
     let row = row_coordinate(
         view,
         elevation_rad,

@@ -5,7 +5,6 @@ use airlight::atmosphere::{Atmosphere, Preset};
 use airlight::axes;
 use airlight::fog::lights::{Light, PointLight};
 use airlight::glam::{DVec3, Mat4, Vec3};
-use airlight::sky::SkySettings;
 use airlight::spectrum::RgbSpace;
 use airlight::transfer::medium_evaluations;
 use airlight_gpu::headless::FORMAT;
@@ -64,7 +63,7 @@ pub struct Frame {
 impl Scene {
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, Box<dyn Error>> {
         let air = Preset::Hillaire.atmosphere();
-        let solver = SkySolver::new(&air, &SkySettings::default(), RgbSpace::Srgb)?;
+        let solver = SkySolver::new(&air, &SkySolver::default_settings(), RgbSpace::Srgb)?;
         let ground = mountains()?;
         let eye_m = DVec3::Y * (ground.height_m([0.0; 2]) + ABOVE_GROUND_M);
         let mut terrain = TerrainPass::new(device, queue, FORMAT);

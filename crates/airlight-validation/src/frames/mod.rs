@@ -374,7 +374,7 @@ impl Group {
             (Quantity::Sky, Space, _) => (0.3, 2.0),
             (Quantity::SkyColour, Air, true) => (0.1, 1.0),
             (Quantity::SkyColour, _, _) => (0.3, 1.5),
-            (Quantity::Walls, Air | AboveDust, _) => (0.3, 1.1),
+            (Quantity::Walls, Air | AboveDust, _) => (0.3, 1.0),
             (Quantity::Walls, Space, _) => (0.1, 0.5),
             (Quantity::WallColour, Air | AboveDust, _) => (0.3, 1.0),
             (Quantity::WallColour, Space, _) => (0.1, 1.0),

@@ -7,7 +7,7 @@ use airlight::atmosphere::Atmosphere;
 use airlight::glam::DVec3;
 use airlight::models::registry;
 use airlight::scene::{Channels, PreparedModel, Scene};
-use airlight::sky::{SkySettings, SunCoverage, View};
+use airlight::sky::{SunCoverage, View};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use airlight::sun::SunState;
 use airlight_gpu::headless::{FORMAT, Geometry, Headless};
@@ -61,7 +61,7 @@ impl<'a> Engine<'a> {
     /// The renderer with its default settings.
     pub fn new(device: &'a Headless, air: &Atmosphere) -> Result<Self, FramesError> {
         Ok(Self {
-            solver: SkySolver::new(air, &SkySettings::default(), RgbSpace::Srgb)?,
+            solver: SkySolver::new(air, &SkySolver::default_settings(), RgbSpace::Srgb)?,
             passes: SkyPasses::new(&device.device, &device.queue, FORMAT)?,
             device,
         })

@@ -12,7 +12,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 flat_struct! {
     twins::sky_tables::SkyView { sun, height_m, ground_radius_m, air_height_m, horizon_rad, highest_rad, kink_rad, kink_place,
-        dense_share, dense_azimuth, dense_width, even_below, jump_height_m, extinction_above, smooth_above, haze_above }
+        dense_share, dense_azimuth, dense_width, even_below, jump_height_m, jump_place, level_step, extinction_above, smooth_above, haze_above }
     twins::sky_tables::SkyScales { smooth_light, haze }
     twins::sky_tables::SpectralPath { transmittance, path_radiance }
 }
@@ -60,12 +60,19 @@ fn view(r: &mut Random) -> Vec<f32> {
         -horizon.sin() as f32,
         r.or(&[100.0, 6e3, height_m], |r| r.decades(10.0, 9e4)),
     ]);
+    all.extend(match f64::from(height_m) < TOP_M {
+        true => [
+            r.one_of(&[0.0, 0.2, 0.8]),
+            r.or(&[0.0], |r| r.between(0.0, 0.5)),
+        ],
+        false => [0.0; 2],
+    });
     all.extend((0..12).map(|_| r.or(&[1.0, 1e-3], |r| r.decades(1e-3, 10.0))));
     all
 }
 
 /// Number of numbers of a view.
-const VIEW: usize = 27;
+const VIEW: usize = 29;
 
 /// A view and a direction, which is not at the horizon or the limb, where radiance jumps.
 fn view_and_direction(r: &mut Random) -> Vec<f32> {
@@ -195,21 +202,47 @@ fn span(view: &[f64], sine: f64, meets_ground: bool) -> [f64; 2] {
     [start, end.max(start)]
 }
 
-/// Part of a way in the air inside the sphere of the jump.
-fn share(view: &[f64], span: [f64; 2], sine: f64, length: f64, meets_ground: bool) -> f64 {
+/// Distances between which a ray is inside the sphere of the jump.
+fn below_jump(view: &[f64], span: [f64; 2], sine: f64, meets_ground: bool) -> [f64; 2] {
     let (radius, jump) = (view[4] + view[3], view[4] + view[14]);
     let c = radius * radius - jump * jump;
     let discriminant = radius * radius * sine * sine - c;
-    if discriminant < 0.0 {
-        return 0.0;
+    if discriminant <= 0.0 || (c > 0.0 && sine >= 0.0) {
+        return [0.0; 2];
     }
-    let entry = -radius * sine - discriminant.sqrt();
     let exit = match meets_ground {
         true => span[1],
         false => -radius * sine + discriminant.sqrt(),
     };
+    // From inside, and at the very surface upwards, rounding must not make a crossing.
+    let entry = if c > 0.0 {
+        -radius * sine - discriminant.sqrt()
+    } else {
+        0.0
+    };
+    let exit = if c == 0.0 && sine >= 0.0 && !meets_ground {
+        0.0
+    } else {
+        exit
+    };
+    [entry, exit]
+}
+
+/// Part of a way in the air inside the sphere of the jump.
+fn share(view: &[f64], span: [f64; 2], sine: f64, length: f64, meets_ground: bool) -> f64 {
+    let [entry, exit] = below_jump(view, span, sine, meets_ground);
     let inside = (span[0] + length).min(exit) - span[0].max(entry);
     (inside / length.max(1e-6)).clamp(0.0, 1.0)
+}
+
+/// Part of a way in the air up to the first crossing of that sphere.
+fn part_up_to_jump(view: &[f64], span: [f64; 2], sine: f64, meets_ground: bool) -> f64 {
+    let [entry, exit] = below_jump(view, span, sine, meets_ground);
+    let crossing = if entry > span[0] { entry } else { exit };
+    match view[15] == 0.0 || meets_ground {
+        true => 0.0,
+        false => ((crossing - span[0]) / (span[1] - span[0]).max(1e-6)).clamp(0.0, 1.0),
+    }
 }
 
 /// What is relative to `above` for a ray with a share below a jump.
@@ -219,14 +252,8 @@ fn relative(above: &[f64], share: f64) -> [f64; 4] {
 
 /// A view, the interval in the air of a ray that meets air, and whether it meets the ground.
 fn ray(r: &mut Random) -> Vec<f32> {
-    let mut all = view_and_direction(r);
-    let elevation = all[VIEW + 1].clamp(-1.0, 1.0).asin().min(all[7] - 1e-3);
-    let below = elevation < all[6];
-    all.truncate(VIEW);
-    let exact: Vec<f64> = all.iter().copied().map(f64::from).collect();
-    let span_m = span(&exact, f64::from(elevation).sin(), below);
-    all.extend(span_m.map(|m| m as f32));
-    all.push(f32::from(below));
+    let mut all = crossing_ray(r);
+    all.remove(VIEW + 2);
     all
 }
 
@@ -235,7 +262,7 @@ fn step_at_eye(view: &[f64], span: [f64; 2], meets_ground: bool) -> f64 {
     match (height < top, meets_ground) {
         (false, true) => 2.0,
         (false, false) => 1.0,
-        (true, false) => 0.0,
+        (true, false) => view[16],
         (true, true) => {
             let slant = 1.0 - (height / span[1].max(1.0)).min(1.0);
             2.0 * (2.5 * height / top).min(1.0) * (1.0 - slant.powi(4))
@@ -248,10 +275,66 @@ fn part(place: f64, first_step: f64) -> f64 {
     first_step * place + (1.0 - first_step) * place * place
 }
 
-fn place_of_distance(view: &[f64], span: [f64; 2], length: f64, meets_ground: bool) -> f64 {
-    let first = step_at_eye(view, span, meets_ground);
+/// Part of the way in the air at a place: along the ray that grazes the jump, the step is [`step_at_eye`]'s throughout; along others the
+/// parts before and behind the jump are scaled to its crossing.
+fn way_at(view: &[f64], span: [f64; 2], sine: f64, place: f64, meets_ground: bool) -> f64 {
+    let way = part(place, step_at_eye(view, span, meets_ground));
+    let at_jump = part_up_to_jump(view, span, sine, meets_ground);
+    let grazing = part(view[15], view[16]);
+    if at_jump == 0.0 {
+        way
+    } else if place < view[15] {
+        at_jump * way / grazing
+    } else {
+        at_jump + (1.0 - at_jump) * (way - grazing) / (1.0 - grazing)
+    }
+}
+
+fn place_of_distance(
+    view: &[f64],
+    span: [f64; 2],
+    sine: f64,
+    length: f64,
+    meets_ground: bool,
+) -> f64 {
     let way = (length / (span[1] - span[0]).max(1e-6)).clamp(0.0, 1.0);
-    inverse(|place| part(place, first), way)
+    inverse(|place| way_at(view, span, sine, place, meets_ground), way)
+}
+
+/// A view, the interval in the air of a ray that meets air, the sine of its elevation, a number from 0 to 1, and whether it meets the
+/// ground.
+fn along_ray(r: &mut Random) -> Vec<f32> {
+    let mut all = view_and_direction(r);
+    let elevation = all[VIEW + 1].clamp(-1.0, 1.0).asin().min(all[7] - 1e-3);
+    let below = elevation < all[6];
+    all.truncate(VIEW);
+    let exact: Vec<f64> = all.iter().copied().map(f64::from).collect();
+    let span_m = span(&exact, f64::from(elevation).sin(), below);
+    all.extend(span_m.map(|m| m as f32));
+    all.extend([
+        elevation.sin(),
+        r.or(&[0.0, 1.0], Random::unit),
+        f32::from(below),
+    ]);
+    all
+}
+
+/// As [`along_ray`], with a length in the air instead of the number.
+fn length_along_ray(r: &mut Random) -> Vec<f32> {
+    let mut all = along_ray(r);
+    all[VIEW + 3] *= all[VIEW + 1] - all[VIEW];
+    all
+}
+
+/// As [`along_ray`], without the number.
+fn crossing_ray(r: &mut Random) -> Vec<f32> {
+    let mut all = along_ray(r);
+    all.remove(VIEW + 3);
+    all
+}
+
+fn column_of_aerial(view: &[f64], azimuth: f64) -> f64 {
+    inverse(|place| part(place, 0.4), column(view, azimuth))
 }
 
 pub fn place_of_phase(one_minus_cos: f64) -> f64 {
@@ -327,13 +410,14 @@ fn aerial(x: &[f64]) -> Vec<f64> {
     if length <= 0.0 || elevation > view[7] {
         return [[1.0; 4], [0.0; 4]].concat();
     }
-    let w = texel(place_of_distance(view, [start, end], length, below), 32.0);
+    let place = place_of_distance(view, [start, end], direction[1], length, below);
+    let w = texel(place, 40.0);
     let v = row(view, elevation, below, AERIAL_ROWS);
-    let u = texel(column(view, azimuth(direction, view)), 32.0);
+    let u = texel(column_of_aerial(view, azimuth(direction, view)), 32.0);
     let phase = haze_phase(one_minus_cos(direction, view));
     let share = share(view, [start, end], direction[1], length, below);
-    let extinction = relative(&view[15..19], share);
-    let [smooth, haze] = [19, 23].map(|first| relative(&view[first..][..4], share));
+    let extinction = relative(&view[17..21], share);
+    let [smooth, haze] = [21, 25].map(|first| relative(&view[first..][..4], share));
     let depth = sample("extinction_table_2d", [w, v, 0.5]);
     let depth: [f64; 4] = std::array::from_fn(|k| depth[k] * extinction[k] * length * 1e-3);
     let scales: Vec<f64> = (0..8)
@@ -449,33 +533,44 @@ pub fn sky_tables() -> Vec<Row> {
             all.extend([elevation.sin(), f32::from(below)]);
             all
         } => |x| span(x, x[VIEW], x[VIEW + 1] != 0.0).to_vec();
-        share_below_jump: |r| {
-            let mut all = view_and_direction(r);
-            let elevation = all[VIEW + 1].clamp(-1.0, 1.0).asin().min(all[7] - 1e-3);
-            let below = elevation < all[6];
-            all.truncate(VIEW);
-            let exact: Vec<f64> = all.iter().copied().map(f64::from).collect();
-            let span_m = span(&exact, f64::from(elevation).sin(), below);
-            let length_m = (span_m[1] - span_m[0]) * f64::from(r.or(&[0.0, 1.0], Random::unit));
-            all.extend(span_m.map(|m| m as f32));
-            all.extend([elevation.sin(), length_m as f32, f32::from(below)]);
-            all
-        } => |x| {
+        below_jump_m: crossing_ray => |x| {
+            let of = &x[VIEW..];
+            below_jump(x, [of[0], of[1]], of[2], of[3] != 0.0).to_vec()
+        };
+        share_below_jump: length_along_ray => |x| {
             let of = &x[VIEW..];
             vec![share(x, [of[0], of[1]], of[2], of[3], of[4] != 0.0)]
         };
+        part_at_jump: crossing_ray => |x| {
+            let of = &x[VIEW..];
+            vec![part_up_to_jump(x, [of[0], of[1]], of[2], of[3] != 0.0)]
+        };
+        steps_at_jump: |r| {
+            let mut all = view(r);
+            all[15] = r.between(0.01, 0.9);
+            all
+        } => |x| {
+            // Slopes of the way at the start of each part, relative to the mean slope of the part.
+            let (place, step) = (x[15], x[16]);
+            let at_jump = part(place, step);
+            vec![step * place / at_jump, (step + 2.0 * (1.0 - step) * place) * (1.0 - place) / (1.0 - at_jump)]
+        };
+        aerial_column_place: |r| [view(r), vec![r.or(&[0.0, 1.0], Random::unit)]].concat()
+            => |x| vec![column_of_aerial(x, x[VIEW])];
         first_step: |r| ray(r) => |x| vec![step_at_eye(x, [x[VIEW], x[VIEW + 1]], x[VIEW + 2] != 0.0)];
         place_from_part: |r| vec![r.or(&[0.0, 1.0], Random::unit), r.or(&[0.0, 1.0, 2.0], |r| r.between(0.0, 2.0))]
             => |x| vec![inverse(|place| part(place, x[1]), x[0])];
         part_from_place: |r| vec![r.or(&[0.0, 1.0], Random::unit), r.or(&[0.0, 1.0, 2.0], |r| r.between(0.0, 2.0))]
             => |x| vec![part(x[0], x[1])];
-        distance_place: |r| {
-            let mut all = ray(r);
-            let below = all.pop().expect("a ray");
-            let length_m = (all[VIEW + 1] - all[VIEW]) * r.or(&[0.0, 1.0, 1.5], Random::unit);
-            all.extend([length_m, below]);
-            all
-        } => |x| vec![place_of_distance(x, [x[VIEW], x[VIEW + 1]], x[VIEW + 2], x[VIEW + 3] != 0.0)];
+        distance_place: length_along_ray => |x| {
+            let of = &x[VIEW..];
+            vec![place_of_distance(x, [of[0], of[1]], of[2], of[3], of[4] != 0.0)]
+        };
+        length_from_distance_place: along_ray => |x| {
+            let of = &x[VIEW..];
+            let way = way_at(x, [of[0], of[1]], of[2], of[3], of[4] != 0.0);
+            vec![way * (of[1] - of[0])]
+        };
         phase_place: |r| vec![r.one_minus_cos()] => |x| vec![place_of_phase(x[0])];
         one_minus_cos_from_phase_place: |r| vec![r.or(&[0.0, 1.0], Random::unit)]
             => |x| vec![2.0 * (FRAC_PI_2 * x[0] * x[0]).sin().powi(2)];
