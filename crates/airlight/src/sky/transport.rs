@@ -35,7 +35,7 @@ pub struct Transport<'a, const N: usize> {
     /// Half as many, and the interpolation between them.
     few_azimuth_cosines: Vec<f64>,
     between_few_azimuths: BetweenAzimuths,
-    /// Cosines of the multiples of each azimuth, at least [`MODES`], without multiples that so many azimuths do not resolve.
+    /// Cosines of the multiples of each azimuth: at least [`MODES`], where there are as many azimuths.
     azimuth_modes: Vec<Vec<f32>>,
     /// Whether scattering polarises the light.
     polarised: bool,
