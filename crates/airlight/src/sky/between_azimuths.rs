@@ -11,8 +11,8 @@ use std::f64::consts::PI;
 #[derive(Clone, Debug)]
 pub struct BetweenAzimuths {
     few: usize,
-    /// Weights of the few values, for each of the azimuths.
-    weights: Vec<f32>,
+    /// For each of the azimuths, the first of the values with a weight, and the weights from there on.
+    weights: Vec<(usize, Vec<f32>)>,
 }
 
 impl BetweenAzimuths {
@@ -75,10 +75,15 @@ impl BetweenAzimuths {
     }
 
     fn new(few: usize, many: usize, weight: impl Fn(usize, usize) -> f64) -> Self {
-        let pairs = (0..many).flat_map(|to| (0..few).map(move |from| (to, from)));
+        let weights = |to: usize| {
+            let all: Vec<f32> = (0..few).map(|from| weight(to, from) as f32).collect();
+            let first = all.iter().position(|&w| w != 0.0).unwrap_or(0);
+            let last = all.iter().rposition(|&w| w != 0.0).unwrap_or(0);
+            (first, all[first..=last].to_vec())
+        };
         Self {
             few,
-            weights: pairs.map(|(to, from)| weight(to, from) as f32).collect(),
+            weights: (0..many).map(weights).collect(),
         }
     }
 
@@ -93,14 +98,12 @@ impl BetweenAzimuths {
         &'a self,
         few: &'a [Spectrum<N>],
     ) -> impl Iterator<Item = Spectrum<N>> + 'a {
-        self.weights.chunks_exact(self.few).map(
+        self.weights.iter().map(
             #[inline(always)]
-            move |weights| {
+            move |(first, weights)| {
                 let mut sum = Spectrum::ZERO;
-                for (value, weight) in few.iter().zip(weights) {
-                    if *weight != 0.0 {
-                        sum = sum.scale_acc(*value, *weight);
-                    }
+                for (value, weight) in few[*first..].iter().zip(weights) {
+                    sum = sum.scale_acc(*value, *weight);
                 }
                 sum.max_scalar(0.0)
             },

@@ -7,6 +7,7 @@ use super::ray_bundle::RayBundle;
 use super::table::{
     AZIMUTHS, Band, Rows, STEPS_ABOVE, STEPS_BELOW, SkyTable, TableChannels, with_mirrored_columns,
 };
+use super::table_coordinates::TableCoordinates;
 use super::view::View;
 use crate::atmosphere::Constituent;
 use crate::axes;
@@ -47,7 +48,7 @@ impl SkyTable {
         let width = peaked.width * (1 + peaked.parts.len());
         let azimuth_rad = |k| PI * coordinates.azimuth(k as f64 / AZIMUTHS as f64);
         let azimuths_rad: Vec<f64> = (0..=AZIMUTHS).map(azimuth_rad).collect();
-        let between = between_azimuths(view);
+        let between = between_azimuths(view, &coordinates);
         let mut values = Vec::new();
         let mut band = |places: [f64; 2], steps: usize, is_below: bool| {
             let first = values.len() / (AZIMUTHS + 1) / width;
@@ -106,11 +107,11 @@ impl SkyTable {
 
 /// Interpolation of light that varies slowly with the azimuth: in daylight it varies by little, in twilight and from space by orders of
 /// magnitude.
-fn between_azimuths(view: &View) -> BetweenAzimuths {
+fn between_azimuths(view: &View, coordinates: &TableCoordinates) -> BetweenAzimuths {
     /// Elevation of the sun from which it is day, degrees.
     const DAY_DEG: f64 = 2.0;
-    let is_uneven = view.table_coordinates().dense_share > 0.0;
-    match axes::elevation_deg(view.sun()) >= DAY_DEG && !is_uneven {
+    let has_even_columns = coordinates.dense_share == 0.0;
+    match axes::elevation_deg(view.sun()) >= DAY_DEG && has_even_columns {
         true => BetweenAzimuths::ends(AZIMUTHS, 4),
         false => BetweenAzimuths::halfway(AZIMUTHS),
     }
