@@ -13,9 +13,10 @@ use super::horizon::{HorizonPlace, MODES};
 use super::polarised::{POLARISED, TensorHarmonics};
 use crate::math::interpolation::lerp;
 use crate::spectrum::Spectrum;
+use crate::transfer::columns::ColumnRow;
 use crate::transfer::march::{MAX_NODES, Marcher, Node};
 use crate::transfer::ray::{Ray, in_shadow};
-use crate::transfer::residual::stream_transmittances;
+use crate::transfer::residual::{STREAMS, stream_transmittances};
 use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent, Shell};
 use std::ops::{ControlFlow, Range};
 
@@ -281,28 +282,31 @@ impl ShadowEdges {
     }
 }
 
-/// Adds the sunlight that a point scatters into one of a number of rays to `out`: `[scatterer][stream][ray]`. Light on its way from there
-/// is attenuated by a transmittance, which is given times the length that the point stands for; by the optical depth that counts as
-/// unscattered, depending on the stream; and less by a factor if it is polarised.
+/// Streams of singly scattered sunlight by scatterer, without phase functions; the one after those of the intensity is that of polarised
+/// light.
+type Streams<const N: usize> = [[Spectrum<N>; STREAMS + 1]; MAX_CONSTITUENTS];
+
+/// Adds the sunlight that a point scatters into a ray. Light on its way from there is attenuated by a transmittance, which is given times
+/// the length that the point stands for; by the optical depth that counts as unscattered, depending on the stream; and less by a factor if
+/// it is polarised.
 #[inline(always)]
 fn add_sunlight<const K: usize, const LINEAR: bool, const N: usize>(
     air: &Air<N>,
     (weight, removed, linear_gain): (Spectrum<N>, Spectrum<N>, Spectrum<N>),
     densities: &PerConstituent,
     to_sun: &[f32; MAX_CONSTITUENTS],
-    (slot, rays): (usize, usize),
-    out: &mut [Spectrum<N>],
+    out: &mut Streams<N>,
 ) {
     let depth = air.coefficients.extinction_f32(to_sun);
     let arriving = weight * (Spectrum::ZERO - depth).exp();
     let streams = stream_transmittances(removed + air.peaks.extinction_f32(to_sun));
-    let count = K + usize::from(LINEAR);
-    for (place, s) in air.scatterers.iter().enumerate() {
+    for (s, sums) in air.scatterers.iter().zip(out) {
         let density = densities[s.constituent] as f32;
-        for k in 0..count {
-            let factor = if k < K { streams[k] } else { linear_gain };
-            let sum = &mut out[(place * count + k) * rays + slot];
-            *sum = sum.scale_acc(arriving * factor, density);
+        for k in 0..s.streams().min(K) {
+            sums[k] = sums[k].scale_acc(arriving * streams[k], density);
+        }
+        if LINEAR {
+            sums[K] = sums[K].scale_acc(arriving * linear_gain, density);
         }
     }
 }
@@ -524,37 +528,14 @@ impl<const N: usize> Path<N> {
         );
         let all = (0..rays).map(|slot| bundle.ray((self.radius_m, self.mu), slot));
         let edges = ShadowEdges::new(shell, all);
+        let columns = |node: &PathNode<N>| air.columns.at(node.radius_m);
+        let columns: Vec<ColumnRow<'_>> = self.nodes.iter().map(columns).collect();
+        let count = K + usize::from(LINEAR);
         let mut ends_m = Vec::new();
-        for step in &self.steps {
-            for node in &self.nodes[step.nodes.clone()] {
-                let columns = air.columns.at(node.radius_m);
-                for slot in 0..rays {
-                    if edges.inside(step, slot).next().is_some() {
-                        continue;
-                    }
-                    let mu_sun = (self.radius_m * bundle.mu_sun[slot] + node.t * bundle.nu[slot])
-                        / node.radius_m;
-                    let to_sun = if mu_sun >= 0.0 {
-                        columns.to_space_m(mu_sun as f32)
-                    } else if in_shadow(node.radius_m, mu_sun, shell.ground_radius_m) {
-                        continue;
-                    } else {
-                        let to_sun = air.columns.to_space_m(node.radius_m, mu_sun);
-                        to_sun.map(|column| column as f32)
-                    };
-                    let ray = (slot, rays);
-                    let attenuated = (node.weight, node.removed, node.linear_gain);
-                    add_sunlight::<K, LINEAR, N>(
-                        air,
-                        attenuated,
-                        &node.densities,
-                        &to_sun,
-                        ray,
-                        out,
-                    );
-                }
-            }
-            for slot in 0..rays {
+        for slot in 0..rays {
+            let mut sums = [[Spectrum::ZERO; STREAMS + 1]; MAX_CONSTITUENTS];
+            let (mu_sun, nu) = (bundle.mu_sun[slot], bundle.nu[slot]);
+            for step in &self.steps {
                 ends_m.clear();
                 ends_m.extend(edges.inside(step, slot));
                 if !ends_m.is_empty() {
@@ -566,8 +547,25 @@ impl<const N: usize> Path<N> {
                         step,
                         (bundle, slot),
                         &ends_m,
-                        out,
+                        &mut sums,
                     );
+                    continue;
+                }
+                for k in step.nodes.clone() {
+                    let (node, columns) = (&self.nodes[k], &columns[k]);
+                    let mu_sun = (self.radius_m * mu_sun + node.t * nu) / node.radius_m;
+                    if in_shadow(node.radius_m, mu_sun, shell.ground_radius_m) {
+                        continue;
+                    }
+                    let to_sun = columns.to_space_m(mu_sun);
+                    let attenuated = (node.weight, node.removed, node.linear_gain);
+                    let densities = &node.densities;
+                    add_sunlight::<K, LINEAR, N>(air, attenuated, densities, &to_sun, &mut sums);
+                }
+            }
+            for (place, sums) in sums[..air.scatterers.len()].iter().enumerate() {
+                for (k, sum) in sums[..count].iter().enumerate() {
+                    out[(place * count + k) * rays + slot] = *sum;
                 }
             }
         }
@@ -582,7 +580,7 @@ impl<const N: usize> Path<N> {
         step: &PathStep,
         (bundle, slot): (&RayBundle, usize),
         ends_m: &[f64],
-        out: &mut [Spectrum<N>],
+        out: &mut Streams<N>,
     ) {
         let shell = air.shell();
         let ray = bundle.ray((self.radius_m, self.mu), slot);
@@ -600,8 +598,7 @@ impl<const N: usize> Path<N> {
                 let Ray {
                     radius_m, mu_sun, ..
                 } = node.here;
-                let to_sun = air.columns.to_space_m(radius_m, mu_sun);
-                let to_sun = to_sun.map(|column| column as f32);
+                let to_sun = air.columns.at(radius_m).to_space_m(mu_sun);
                 let attenuated = (
                     air.coefficients.transmittance(&node.columns_m) * node.dt as f32,
                     air.peaks.extinction(&node.columns_m),
@@ -610,8 +607,7 @@ impl<const N: usize> Path<N> {
                         false => Spectrum::ONE,
                     },
                 );
-                let ray = (slot, bundle.len());
-                add_sunlight::<K, LINEAR, N>(air, attenuated, &node.densities, &to_sun, ray, out);
+                add_sunlight::<K, LINEAR, N>(air, attenuated, &node.densities, &to_sun, out);
             }
         }
     }

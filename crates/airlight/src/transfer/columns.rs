@@ -60,6 +60,8 @@ struct Above {
 
 /// Columns from one radius.
 pub struct ColumnRow<'a> {
+    all: &'a SlantColumns,
+    radius_m: f64,
     panel: &'a Panel,
     above: &'a Above,
     /// The radius, in radii of the upper edge of its panel.
@@ -71,17 +73,24 @@ pub struct ColumnRow<'a> {
 /// Columns along a ray to space that misses the ground, from those along rays that climb (`upward(radius_m, mu)`, `mu >= 0`).
 /// A ray that starts downwards first passes its lowest point: `N = 2 N(tangent, 0) - N(r, -mu)`.
 #[inline(always)]
-pub fn slant_columns<const C: usize>(
+pub fn slant_columns<T: Real, const C: usize>(
     (radius_m, mu): (f64, f64),
     ground_radius_m: f64,
-    upward: impl Fn(f64, f64) -> [f64; C],
-) -> [f64; C] {
+    upward: impl Fn(f64, f64) -> [T; C],
+) -> [T; C] {
     if mu >= 0.0 {
         return upward(radius_m, mu);
     }
     let tangent = (radius_m * ((1.0 - mu) * (1.0 + mu)).max(0.0).sqrt()).max(ground_radius_m);
     let (beyond, above) = (upward(tangent, 0.0), upward(radius_m, -mu));
-    std::array::from_fn(|c| (2.0 * beyond[c] - above[c]).max(0.0))
+    std::array::from_fn(|c| {
+        let column = T::of(2.0) * beyond[c] - above[c];
+        if column > T::of(0.0) {
+            column
+        } else {
+            T::of(0.0)
+        }
+    })
 }
 
 /// Integrals of the powers 0 to 3 of `fraction` over a chord of a panel that ends at its upper edge, where the cosine of the
@@ -269,9 +278,23 @@ fn place_in_octaves(ratio: f32) -> (usize, f32) {
 }
 
 impl ColumnRow<'_> {
-    /// Columns from this radius along `mu >= 0` to the top of the atmosphere, in metres at density 1.
+    /// Columns from this radius along `mu` to the top of the atmosphere for a ray that misses the ground, in metres at density 1.
     #[inline(always)]
-    pub fn to_space_m(&self, mu: f32) -> [f32; MAX_CONSTITUENTS] {
+    pub fn to_space_m(&self, mu: f64) -> [f32; MAX_CONSTITUENTS] {
+        slant_columns(
+            (self.radius_m, mu),
+            self.all.shell.ground_radius_m,
+            #[inline(always)]
+            |radius_m, mu| match radius_m == self.radius_m {
+                true => self.upward_m(mu as f32),
+                false => self.all.at(radius_m).upward_m(mu as f32),
+            },
+        )
+    }
+
+    /// The same along `mu >= 0`.
+    #[inline(always)]
+    fn upward_m(&self, mu: f32) -> [f32; MAX_CONSTITUENTS] {
         let panel = self.panel;
         let from = self.radius * mu;
         let mu_above = (from * from + self.drop).sqrt();
@@ -312,12 +335,7 @@ impl SlantColumns {
     /// Columns from `radius_m` along `mu` to the top of the atmosphere for a ray that misses the ground, in metres at density 1.
     #[inline(always)]
     pub fn to_space_m(&self, radius_m: f64, mu: f64) -> PerConstituent {
-        slant_columns(
-            (radius_m, mu),
-            self.shell.ground_radius_m,
-            #[inline(always)]
-            |radius_m, mu| self.at(radius_m).to_space_m(mu as f32).map(f64::from),
-        )
+        self.at(radius_m).to_space_m(mu).map(f64::from)
     }
 
     /// Columns between two distances along a ray that lie inside the shell, in metres at density 1. `edges` is scratch space.
@@ -355,6 +373,8 @@ impl SlantColumns {
         let panel = &self.panels[index];
         let top = panel.top_m;
         ColumnRow {
+            all: self,
+            radius_m,
             panel,
             above: &self.above[index],
             radius: (radius_m / top) as f32,
