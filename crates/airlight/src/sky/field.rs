@@ -150,9 +150,11 @@ impl Interval {
     }
 }
 
-/// Radii at equal steps of a measure that grows with each scatterer's column below and with altitude.
+/// Radii at equal steps of a measure that grows with each scatterer's column below and with the coordinate of the altitude.
 fn radii_m<const N: usize>(air: &Air<N>, count: usize) -> Vec<f64> {
     const SAMPLES: usize = 2000;
+    /// Weight of the coordinate: twilight comes from high, thin air.
+    const ALTITUDE_WEIGHT: f64 = 1.5;
     let shell: &Shell = air.shell();
     let columns_above_m = |radius_m: f64| air.columns.at(radius_m).to_space_m(1.0).map(f64::from);
     let ground = columns_above_m(shell.ground_radius_m);
@@ -164,7 +166,7 @@ fn radii_m<const N: usize>(air: &Air<N>, count: usize) -> Vec<f64> {
             .iter()
             .map(|s| share * (1.0 - columns[s.constituent] / ground[s.constituent].max(1e-30)))
             .sum();
-        below + x
+        below + ALTITUDE_WEIGHT * x
     };
     let total = measure(1.0);
     let mut radii = vec![shell.ground_radius_m];
@@ -225,8 +227,8 @@ fn resolve_depth<const N: usize>(air: &Air<N>, radii_m: &[f64]) -> Vec<f64> {
 
 /// Smallest limit of the optical depth of a step between radii, the limit as a fraction of the depth from the nearest end, and
 /// its largest value.
-const MIN_STEP: f64 = 0.15;
-const GROWTH: f64 = 0.25;
+const MIN_STEP: f64 = 0.1;
+const GROWTH: f64 = 0.13;
 const MAX_STEP: f64 = 4.0;
 /// About the largest number of steps in the interior of very thick air, where the light changes slowly.
 const MAX_STEPS: f64 = 60.0;

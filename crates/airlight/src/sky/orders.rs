@@ -31,9 +31,9 @@ const SHAPED: f32 = 0.2;
 /// Factor of the last change above which earlier steps are forgotten.
 const RESTART: f32 = 10.0;
 
-/// Ratio of the second change to the first that is expected where light does not spread horizontally: it is 0.004 to 0.1 in clear and
-/// hazy air.
-const EXPECTED: f32 = 1.0 / 3.0;
+/// Ratios of the second change to the first that are expected where light does not spread horizontally, under suns below the horizon and
+/// under others: in clear and hazy air they are 0.1 to 0.2 and 0.004 to 0.1.
+const EXPECTED: [f32; 2] = [1.0 / 3.0, 0.1];
 
 /// Weight of changes under suns below the horizon: little of the light in the planet's shadow reaches an eye. By twilight, skies at the
 /// ground are wrong by less than a third of it.
@@ -118,13 +118,15 @@ pub fn solve<const N: usize>(
             }
             // The changes fall by a nearly constant factor, or unevenly where corrections are combined; the first is the light that is
             // missing in the beginning.
-            let ratio = match last.is_finite() {
-                true if mixing.is_some() => (change / last).max(SLOW),
-                true => change / last,
+            let ratios = match last.is_finite() {
+                true if mixing.is_some() => [(change / last).max(SLOW); 2],
+                true => [change / last; 2],
                 false if exchange.is_none() => EXPECTED,
-                false => 1.0,
+                false => [1.0; 2],
             };
-            error = in_light.max(SHADOW * in_shadow) * ratio / (1.0 - ratio.min(0.99));
+            let [later_in_shadow, later_in_light] =
+                ratios.map(|ratio| ratio / (1.0 - ratio.min(0.99)));
+            error = (in_light * later_in_light).max(SHADOW * in_shadow * later_in_shadow);
             converged = error < settings.tolerance;
             // Steady changes do not count: light that falls to a tenth in each iteration is on its way into a shadow. Changes
             // that are not even finite grow.

@@ -81,20 +81,20 @@ impl Default for SkySettings {
         Self {
             suns: SunCoverage::All,
             scattering: Scattering::All,
-            altitudes: 20,
+            altitudes: 17,
             polarisation_correction: true,
             orders: OrderSettings {
                 degree: 10,
                 peak_degree: 10,
                 rescattered_degree: 6,
                 first: Directions {
-                    zenith_nodes: [8, 7, 8],
+                    zenith_nodes: [7, 10, 5],
                     azimuths: 10,
-                    panel_nodes: 2,
+                    panel_nodes: 3,
                 },
                 later: Directions {
-                    zenith_nodes: [5, 5, 6],
-                    azimuths: 7,
+                    zenith_nodes: [5, 7, 5],
+                    azimuths: 6,
                     panel_nodes: 2,
                 },
                 tolerance: 0.002,
@@ -106,19 +106,28 @@ impl Default for SkySettings {
 }
 
 impl SkySettings {
-    /// Settings for hazy air and low suns: twice the altitudes, more directions and moments; about five times slower.
+    /// Settings for hazy air and low suns: more altitudes, directions and moments; about five times slower.
     pub fn fine() -> Self {
-        let mut settings = Self {
-            altitudes: 40,
+        Self {
+            altitudes: 28,
+            orders: OrderSettings {
+                degree: 12,
+                peak_degree: 12,
+                rescattered_degree: 8,
+                first: Directions {
+                    zenith_nodes: [9, 12, 8],
+                    azimuths: 12,
+                    panel_nodes: 4,
+                },
+                later: Directions {
+                    zenith_nodes: [8, 9, 8],
+                    azimuths: 9,
+                    panel_nodes: 3,
+                },
+                ..Self::default().orders
+            },
             ..Self::default()
-        };
-        let orders = &mut settings.orders;
-        (orders.degree, orders.peak_degree, orders.rescattered_degree) = (12, 12, 8);
-        orders.first.azimuths = 12;
-        orders.later.zenith_nodes = [8, 8, 10];
-        orders.later.azimuths = 11;
-        (orders.first.panel_nodes, orders.later.panel_nodes) = (3, 3);
-        settings
+        }
     }
 
     /// Checks the ranges of all settings.
