@@ -28,28 +28,21 @@ pub struct CostError(pub String);
 /// # Errors
 /// [`CostError`] for an invalid shader.
 pub fn costs(wgsl: &str) -> Result<Vec<(String, Cost)>, CostError> {
-    let module = naga::front::wgsl::parse_str(wgsl)
-        .map_err(|error| CostError(error.emit_to_string(wgsl)))?;
-    let info = Validator::new(ValidationFlags::all(), Capabilities::DUAL_SOURCE_BLENDING)
-        .validate(&module)
-        .map_err(|error| CostError(error.emit_to_string(wgsl)))?;
-    let reader = Reader {
-        module: &module,
-        info: &info,
-    };
+    let shader = Shader::read(wgsl)?;
+    let (module, info) = (&shader.module, &shader.info);
     let functions = module.functions.iter().map(|(handle, function)| {
         let name = function.name.clone().unwrap_or_default();
-        (name, reader.function(handle))
+        (name, shader.function(handle))
     });
     let entries = module.entry_points.iter().enumerate().map(|(k, entry)| {
-        let cost = reader.body(&entry.function, info.get_entry_point(k));
+        let cost = shader.body(&entry.function, info.get_entry_point(k));
         (entry.name.clone(), cost)
     });
     Ok(functions.chain(entries).collect())
 }
 
 impl Cost {
-    fn plus(self, other: Self) -> Self {
+    pub(crate) fn plus(self, other: Self) -> Self {
         Self {
             exp: self.exp + other.exp,
             exp_a_step: self.exp_a_step + other.exp_a_step,
@@ -103,12 +96,48 @@ impl fmt::Display for Cost {
 }
 
 /// A module whose expressions have known types.
-struct Reader<'a> {
-    module: &'a Module,
-    info: &'a ModuleInfo,
+pub(crate) struct Shader {
+    pub module: Module,
+    info: ModuleInfo,
 }
 
-impl Reader<'_> {
+impl Shader {
+    /// A shader in WGSL.
+    pub fn read(wgsl: &str) -> Result<Self, CostError> {
+        let module = naga::front::wgsl::parse_str(wgsl)
+            .map_err(|error| CostError(error.emit_to_string(wgsl)))?;
+        Self::of(module, wgsl)
+    }
+
+    /// A valid module, with the text that it is from.
+    pub fn of(module: Module, wgsl: &str) -> Result<Self, CostError> {
+        let info = Validator::new(ValidationFlags::all(), Capabilities::DUAL_SOURCE_BLENDING)
+            .validate(&module)
+            .map_err(|error| CostError(error.emit_to_string(wgsl)))?;
+        Ok(Self { module, info })
+    }
+
+    /// The shader in WGSL.
+    pub fn text(&self) -> Result<String, CostError> {
+        let flags = naga::back::wgsl::WriterFlags::empty();
+        naga::back::wgsl::write_string(&self.module, &self.info, flags)
+            .map_err(|error| CostError(error.to_string()))
+    }
+
+    /// Costs of the expressions of each function, then of each entry point.
+    pub fn costs_of_expressions(&self) -> impl Iterator<Item = Vec<Cost>> {
+        let (module, info) = (&self.module, &self.info);
+        let functions = module.functions.iter();
+        let functions = functions.map(|(handle, function)| (function, &info[handle]));
+        let entries = module.entry_points.iter().enumerate();
+        let entries = entries.map(|(k, entry)| (&entry.function, info.get_entry_point(k)));
+        functions.chain(entries).map(|(function, info)| {
+            let all = function.expressions.iter();
+            all.map(|(expression, _)| self.expression(function, info, expression))
+                .collect()
+        })
+    }
+
     fn function(&self, handle: Handle<Function>) -> Cost {
         self.body(&self.module.functions[handle], &self.info[handle])
     }

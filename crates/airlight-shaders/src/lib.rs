@@ -23,7 +23,7 @@
 //! [`Part::FogTable`] from a fog.
 //!
 //! With the feature `translate`, `translate` gives the same functions in GLSL, HLSL and MSL (the folder `generated` holds them), and
-//! `costs` counts what the functions of any WGSL shader evaluate.
+//! `costs` counts what the functions of any WGSL shader evaluate at most, `counting` what its invocations evaluate.
 //!
 //! Only core WebGPU is used: f32, no extensions.
 
@@ -32,6 +32,8 @@ mod colour_fit;
 mod compute;
 #[cfg(feature = "translate")]
 mod cost;
+#[cfg(feature = "translate")]
+mod counting;
 mod fog_tables;
 mod function;
 #[cfg(feature = "translate")]
@@ -54,6 +56,8 @@ pub use colour_fit::ColourFit;
 pub use compute::{ComputeEntryPoint, ComputeShader, ComputeTexture};
 #[cfg(feature = "translate")]
 pub use cost::{Cost, CostError, costs};
+#[cfg(feature = "translate")]
+pub use counting::{Counts, counting};
 pub use fog_tables::{FogTables, FogTablesError};
 pub use function::{ErrorBound, Function, functions};
 #[cfg(feature = "translate")]

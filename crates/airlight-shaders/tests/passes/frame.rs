@@ -1,5 +1,6 @@
 //! Frames that a pass draws.
 
+use crate::vulkan;
 use airlight_shaders::{Pass, SpirvModule, spirv_modules};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
@@ -168,16 +169,16 @@ impl<'a> Drawn<'a> {
             pass.draw(0..3, 0..1);
         }
         let size = self.target.size();
-        let readable = self.device.create_buffer(&wgpu::BufferDescriptor {
+        let pixels = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
             size: u64::from(size.width * size.height * 16),
-            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            usage: wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
         encoder.copy_texture_to_buffer(
             self.target.as_image_copy(),
             wgpu::TexelCopyBufferInfo {
-                buffer: &readable,
+                buffer: &pixels,
                 layout: wgpu::TexelCopyBufferLayout {
                     offset: 0,
                     bytes_per_row: Some(size.width * 16),
@@ -187,13 +188,7 @@ impl<'a> Drawn<'a> {
             size,
         );
         self.queue.submit([encoder.finish()]);
-        readable
-            .slice(..)
-            .map_async(wgpu::MapMode::Read, |result| result.expect("a frame"));
-        self.device
-            .poll(wgpu::PollType::wait_indefinitely())
-            .expect("a device that is not lost");
-        let bytes = readable.slice(..).get_mapped_range().expect("a frame");
+        let bytes = vulkan::read(self.device, self.queue, &pixels);
         let numbers = bytes.as_chunks::<4>().0.iter();
         numbers.map(|bytes| f32::from_ne_bytes(*bytes)).collect()
     }

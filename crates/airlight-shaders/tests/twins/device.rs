@@ -83,16 +83,12 @@ impl Device {
             },
             usage: wgpu::BufferUsages::STORAGE,
         });
-        let buffer = |usage| {
-            self.device.create_buffer(&wgpu::BufferDescriptor {
-                label: None,
-                size: bytes,
-                usage,
-                mapped_at_creation: false,
-            })
-        };
-        let outputs = buffer(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
-        let readable = buffer(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
+        let outputs = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: bytes,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        });
         let pipeline = self
             .device
             .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -156,19 +152,9 @@ impl Device {
             let groups = (arguments.len() as u32).div_ceil(ComputeShader::WORKGROUP_SIZE);
             pass.dispatch_workgroups(groups, 1, 1);
         }
-        encoder.copy_buffer_to_buffer(&outputs, 0, &readable, 0, bytes);
         self.queue.submit([encoder.finish()]);
-        readable.slice(..).map_async(wgpu::MapMode::Read, |result| {
-            result.expect("results of the device");
-        });
-        self.device
-            .poll(wgpu::PollType::wait_indefinitely())
-            .expect("a device that is not lost");
-        let view = readable
-            .slice(..)
-            .get_mapped_range()
-            .expect("mapped results");
-        let results: Vec<f32> = view
+        let results = vulkan::read(&self.device, &self.queue, &outputs);
+        let results: Vec<f32> = results
             .as_chunks::<4>()
             .0
             .iter()

@@ -53,3 +53,24 @@ pub fn uploaded(device: &wgpu::Device, queue: &wgpu::Queue, table: &Texture) -> 
     let texture = device.create_texture_with_data(queue, &descriptor, order, &bytes);
     texture.create_view(&Default::default())
 }
+
+/// Bytes of a buffer that may be copied from.
+pub fn read(device: &wgpu::Device, queue: &wgpu::Queue, buffer: &wgpu::Buffer) -> Vec<u8> {
+    let readable = device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: buffer.size(),
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_buffer_to_buffer(buffer, 0, &readable, 0, buffer.size());
+    queue.submit([encoder.finish()]);
+    readable.slice(..).map_async(wgpu::MapMode::Read, |result| {
+        result.expect("bytes of the device");
+    });
+    device
+        .poll(wgpu::PollType::wait_indefinitely())
+        .expect("a device that is not lost");
+    let view = readable.slice(..).get_mapped_range();
+    view.expect("mapped bytes").to_vec()
+}
