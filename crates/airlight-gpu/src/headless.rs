@@ -4,7 +4,7 @@
 use crate::camera::{Camera, Projection};
 use crate::pass::{bytes, filled};
 use crate::passes::SkyPasses;
-use crate::read::{ReadTextureError, read_rgb};
+use crate::read::{ReadTextureError, read_buffer, read_rgb};
 use glam::{Mat4, Vec3};
 
 /// Format of the target of [`Headless::draw`].
@@ -210,6 +210,14 @@ impl Headless {
         self.draw_geometry(&mut encoder, [&target_view, &depth_view], frame, geometry);
         record(&mut encoder, &target_view, &depth_view);
         self.pixels(encoder, &target)
+    }
+
+    /// The bytes of a buffer that may be copied from, after what has been submitted.
+    ///
+    /// # Errors
+    /// [`HeadlessError::Pixels`] if the device is lost.
+    pub fn read_buffer(&self, buffer: &wgpu::Buffer) -> Result<Vec<u8>, HeadlessError> {
+        Ok(read_buffer(&self.device, &self.queue, buffer)?)
     }
 
     fn texture(

@@ -326,6 +326,19 @@ impl SkyPasses {
         map.filter(encoder);
     }
 
+    /// What passes know of the pixels of a frame. A group for each frame, as an encoder may record several.
+    fn frame_group(&self, camera: &Camera, depth: &wgpu::TextureView) -> wgpu::BindGroup {
+        let numbers = uniform(&self.device, "airlight camera", &camera.numbers());
+        let depth = wgpu::BindingResource::TextureView(depth);
+        let resources = [numbers.as_entire_binding(), depth];
+        bind_group(
+            &self.device,
+            &self.frame_layout,
+            "airlight frame",
+            &resources,
+        )
+    }
+
     /// Records the passes of a frame.
     fn draw(
         &self,
@@ -336,17 +349,7 @@ impl SkyPasses {
         depth: &wgpu::TextureView,
         camera: &Camera,
     ) {
-        // A buffer for each frame, as an encoder may record several.
-        let numbers = uniform(&self.device, "airlight camera", &camera.numbers());
-        let frame = bind_group(
-            &self.device,
-            &self.frame_layout,
-            "airlight frame",
-            &[
-                numbers.as_entire_binding(),
-                wgpu::BindingResource::TextureView(depth),
-            ],
-        );
+        let frame = self.frame_group(camera, depth);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("airlight sky"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -463,8 +466,15 @@ fn frame_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Fog;
+    use crate::frame_tables::SkySolver;
+    use crate::headless::{FORMAT, Frame, Geometry, Headless};
     use crate::pass::{at_once_shader, medium_shader};
-    use airlight_shaders::{Cost, costs};
+    use airlight::atmosphere::Preset;
+    use airlight::axes;
+    use airlight::sky::{SkySettings, SunCoverage};
+    use airlight::spectrum::RgbSpace;
+    use airlight_shaders::{Cost, Counts, costs, counting};
 
     /// What a pixel costs at most in each pass: as the book states it.
     #[test]
@@ -499,5 +509,146 @@ mod tests {
             let row = format!("| {name} | | | {} |", of(&shader, entry));
             assert!(book.contains(&row), "{row}");
         }
+    }
+    /// Pixels on a side of a frame, whose lower half are walls.
+    const SIDE: u32 = 1024;
+
+    /// What the passes of a frame evaluate, by shaders that count it while they draw.
+    struct Counter {
+        gpu: Headless,
+        passes: SkyPasses,
+        camera: Camera,
+        frame: Frame,
+        layout: wgpu::BindGroupLayout,
+        counts: wgpu::Buffer,
+    }
+
+    impl Counter {
+        fn new(tables: &FrameTables, towards: DVec3) -> Self {
+            let gpu = Headless::new().unwrap();
+            let mut passes = SkyPasses::new(&gpu.device, &gpu.queue, FORMAT).unwrap();
+            passes.set_tables(tables);
+            let frame = Frame::towards(towards.as_vec3(), SIDE);
+            let storage = wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Storage { read_only: false },
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            };
+            let usages = [
+                wgpu::BufferUsages::STORAGE,
+                wgpu::BufferUsages::COPY_SRC,
+                wgpu::BufferUsages::COPY_DST,
+            ];
+            Self {
+                layout: group_layout(&gpu.device, "counts", &[storage]),
+                counts: gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                    label: None,
+                    size: Counts::BYTES,
+                    usage: usages.into_iter().collect(),
+                    mapped_at_creation: false,
+                }),
+                camera: frame.camera(1e-4),
+                passes,
+                frame,
+                gpu,
+            }
+        }
+
+        fn drawn(&self) -> &Drawn {
+            self.passes.drawn.as_ref().unwrap()
+        }
+
+        /// Counts of a pass with its tables, over some pixels.
+        fn count(
+            &self,
+            (shader, entry): (&str, &str),
+            (layout, tables): (&wgpu::BindGroupLayout, &wgpu::BindGroup),
+            rectangle: [u32; 4],
+        ) -> Counts {
+            let device = &self.gpu.device;
+            let shader = counting(shader, (2, 0), "").unwrap();
+            let layouts = [layout, &self.passes.frame_layout, &self.layout];
+            let pipeline = single(device, &layouts, (&shader, entry), FORMAT);
+            let counts = self.counts.as_entire_binding();
+            let counts = bind_group(device, &self.layout, "counts", &[counts]);
+            let walls = Geometry {
+                colour: [1.0; 3],
+                distance_m: &|_, y| if y < SIDE / 2 { f32::INFINITY } else { 5e3 },
+            };
+            let record = |encoder: &mut wgpu::CommandEncoder,
+                          target: &wgpu::TextureView,
+                          depth: &wgpu::TextureView| {
+                encoder.clear_buffer(&self.counts, 0, None);
+                let frame = self.passes.frame_group(&self.camera, depth);
+                let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                    color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                        view: target,
+                        depth_slice: None,
+                        resolve_target: None,
+                        ops: wgpu::Operations::default(),
+                    })],
+                    ..Default::default()
+                });
+                let [x, y, width, height] = rectangle;
+                pass.set_scissor_rect(x, y, width, height);
+                pass.set_bind_group(1, &frame, &[]);
+                pass.set_bind_group(2, &counts, &[]);
+                draw(&mut pass, &pipeline, tables);
+            };
+            self.gpu.draw(&self.frame, Some(&walls), record).unwrap();
+            let bytes = self.gpu.read_buffer(&self.counts).unwrap();
+            Counts::from_bytes(bytes.try_into().unwrap())
+        }
+    }
+
+    /// Counts in a frame of 1920 x 1080 whose lower half are walls, as the book states them.
+    #[test]
+    fn frames_evaluate_what_the_book_states() {
+        const PIXELS: f64 = 1920.0 * 1080.0;
+        let book = include_str!("../../../docs/src/gpu.md");
+        let sun_deg = 10.0;
+        let settings = SkySettings {
+            suns: SunCoverage::near(sun_deg, 2.0),
+            ..Default::default()
+        };
+        let air = Preset::Average.atmosphere();
+        let solver = SkySolver::new(&air, &settings, RgbSpace::Srgb).unwrap();
+        let sun = axes::direction(140.0, sun_deg);
+        let fog = Fog::new(2000.0, 20.0);
+        let tables = solver.tables(2.0, sun, Some(&fog)).unwrap();
+        let counter = Counter::new(&tables, axes::direction(140.0, 0.0));
+        let whole = [0, 0, SIDE, SIDE];
+        let drawn = &counter.drawn().first;
+        let sky = (&counter.passes.sky_layout, &drawn.sky);
+        let fog = (&counter.passes.fog_layout, &drawn.fog.as_ref().unwrap()[0]);
+        let at_once = counter.gpu.device.features().contains(AT_ONCE_FEATURES);
+        for (name, shader, tables) in [
+            ("sky and air", sky_shader(), sky),
+            ("a layer of fog", fog_shader(), fog),
+        ] {
+            let shader = medium_shader(&shader);
+            let count = |shader: &str, entry| {
+                let counts = counter.count((shader, entry), tables, whole);
+                assert_eq!(counts.invocations, SIDE * SIDE);
+                [counts.exp, counts.reads].map(|n| f64::from(n) / f64::from(SIDE * SIDE))
+            };
+            let row = |[exp, reads]: [f64; 2], passes: &str| {
+                let [exp, reads] = [exp, reads].map(|each| 1e-6 * PIXELS * each);
+                let row = format!("| `airlight-gpu`, {name}{passes} | {exp:.1} | {reads:.1} |");
+                println!("{row}");
+                assert!(book.contains(&row), "{row}");
+            };
+            let [dim, add] = ["dim", "add"].map(|entry| count(&shader, entry));
+            row([dim[0] + add[0], dim[1] + add[1]], ", in two passes");
+            if at_once {
+                row(count(&at_once_shader(&shader), "dim_and_add"), "");
+            }
+        }
+        let (towards, radius_rad) = drawn.disc.unwrap();
+        let rectangle = counter.camera.rectangle([SIDE; 2], towards, radius_rad);
+        let disc = counter.count((&sky_shader(), "disc"), sky, rectangle.unwrap());
+        println!("disc: {disc:?}");
+        // Some thousandths of what the sky takes.
+        assert!((10..100_000).contains(&disc.exp) && (100..100_000).contains(&disc.reads));
     }
 }

@@ -147,3 +147,32 @@ pub fn read_rgb(
     let pending = PendingPixels::of(device, queue, texture, || {});
     pending.wait(device)?.rgb()
 }
+
+/// The bytes of a buffer that may be copied from. Waits for the device.
+///
+/// # Errors
+/// [`ReadTextureError`] if the device is lost.
+#[cfg(feature = "headless")]
+pub fn read_buffer(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    buffer: &wgpu::Buffer,
+) -> Result<Vec<u8>, ReadTextureError> {
+    let readable = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("airlight bytes"),
+        size: buffer.size(),
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_buffer_to_buffer(buffer, 0, &readable, 0, buffer.size());
+    queue.submit([encoder.finish()]);
+    // A failure shows when the range is taken.
+    readable.slice(..).map_async(wgpu::MapMode::Read, |_| ());
+    let polled = device.poll(wgpu::PollType::wait_indefinitely());
+    polled.map_err(|error| ReadTextureError(error.to_string()))?;
+    let bytes = readable.slice(..).get_mapped_range();
+    Ok(bytes
+        .map_err(|error| ReadTextureError(error.to_string()))?
+        .to_vec())
+}

@@ -10,6 +10,7 @@ use crate::wavelengths::WAVELENGTHS_NM;
 use airlight::glam::DVec3;
 use airlight::sky::{SkyError, SplitPath, SplitView, TableCoordinates, View};
 use airlight::spectrum::{RgbSpace, rgb};
+use airlight::transfer::count_exponentials;
 use glam::{Vec3, Vec4};
 use std::f64::consts::PI;
 
@@ -404,6 +405,7 @@ fn aerial(split: &SplitView, eye: &Eye, view: &twin::SkyView) -> Aerial {
             haze[texel] = source(&stop.peaked, opacity) / relative(view.haze_above, share);
         }
     }
+    count_exponentials(4 * smooth.len());
     let mut extinction = Vec::with_capacity(rows * distances);
     for row in 0..rows {
         let mean = |(step, stop): (usize, &SplitPath)| {
@@ -482,6 +484,7 @@ fn scale(light: &[Vec4]) -> Vec4 {
         let brightest = light.iter().map(|v| v[k]).fold(0.0, f32::max);
         let lit = light.iter().map(|v| v[k]).filter(|v| *v > 1e-6 * brightest);
         let (count, sum) = lit.fold((0.0, 0.0), |(n, sum), v| (n + 1.0, sum + f64::from(v).ln()));
+        count_exponentials(count as usize + 1);
         match count > 0.0 {
             true => (sum / count).exp() as f32,
             false => f32::MIN_POSITIVE,
@@ -490,6 +493,7 @@ fn scale(light: &[Vec4]) -> Vec4 {
 }
 
 fn logarithms(size: [usize; 3], light: &[Vec4], scale: Vec4) -> Texture {
+    count_exponentials(4 * light.len());
     let texels = light.iter().map(|value| {
         let ln = |k: usize| f64::from(value[k] / scale[k]).ln().max(DARKEST) as f32;
         Vec4::new(ln(0), ln(1), ln(2), ln(3))

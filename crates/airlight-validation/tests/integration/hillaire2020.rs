@@ -8,6 +8,7 @@ use airlight::models::hillaire2020::Hillaire2020;
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use airlight_gpu::headless::{FORMAT, Frame, Geometry, Headless};
 use airlight_gpu::{Camera, Projection};
+use airlight_shaders::Counts;
 use airlight_validation::frames::hillaire2020::{HillairePasses, HillairePassesError};
 
 /// Suns, degrees.
@@ -202,8 +203,66 @@ fn what_hillaire_cannot_draw_is_refused() {
     assert_eq!(refused, HillairePassesError::Projection);
 }
 
-/// As the book states them, for the sizes of the paper.
+/// Counts of each pass of a frame whose lower half are walls, as the book states them, for the sizes of the paper.
 #[test]
-fn hillaire_evaluates_the_medium_as_often_as_stated() {
-    assert_eq!(HillairePasses::medium_evaluations(), [600_000, 1_081_344]);
+fn hillaire_evaluates_what_the_book_states() {
+    let gpu = Headless::new().unwrap();
+    let (device, queue) = (&gpu.device, &gpu.queue);
+    let counts = device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: Counts::BYTES,
+        usage: wgpu::BufferUsages::STORAGE
+            | wgpu::BufferUsages::COPY_SRC
+            | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let read = || {
+        let bytes = gpu.read_buffer(&counts).unwrap();
+        Counts::from_bytes(bytes.try_into().unwrap())
+    };
+    let air = Preset::Hillaire.atmosphere();
+    let passes = HillairePasses::counting(device, queue, &air, FORMAT, &counts).unwrap();
+    let side = 1024;
+    let frame = Frame::towards(axes::direction(140.0, 0.0).as_vec3(), side);
+    let walls = Geometry {
+        colour: [1.0; 3],
+        distance_m: &|_, y| if y < side / 2 { f32::INFINITY } else { 5e3 },
+    };
+    let sun = axes::direction(140.0, 5.0);
+    passes.set_view(2.0, sun, &frame.camera(1.0)).unwrap();
+    let of = |record: &dyn Fn(&mut wgpu::CommandEncoder)| {
+        let mut encoder = device.create_command_encoder(&Default::default());
+        encoder.clear_buffer(&counts, 0, None);
+        record(&mut encoder);
+        queue.submit([encoder.finish()]);
+        read()
+    };
+    let air = of(&|encoder| {
+        passes.record_transmittance(encoder);
+        passes.record_multiple_scattering(encoder);
+    });
+    let sky = of(&|encoder| passes.record_sky_view(encoder));
+    let aerial = of(&|encoder| passes.record_aerial_perspective(encoder));
+    gpu.draw(&frame, Some(&walls), |encoder, target, depth| {
+        encoder.clear_buffer(&counts, 0, None);
+        passes.record(encoder, target, depth);
+    })
+    .unwrap();
+    let last = read();
+    let places = [sky.calls, aerial.calls].map(u64::from);
+    assert_eq!(HillairePasses::medium_evaluations(), places);
+    assert_eq!(places, [600_000, 1_081_344]);
+    let book = include_str!("../../../../docs/src/gpu.md");
+    let pixels = 1920.0 * 1080.0 / f64::from(side * side);
+    for (name, counts, share) in [
+        ("last pass", last, pixels),
+        ("aerial perspective", aerial, 1.0),
+        ("sky-view", sky, 1.0),
+        ("tables of the air", air, 1.0),
+    ] {
+        let [exp, reads] = [counts.exp, counts.reads].map(|n| 1e-6 * share * f64::from(n));
+        let row = format!("| Hillaire 2020, {name} | {exp:.1} | {reads:.1} |");
+        println!("{row}");
+        assert!(book.contains(&row), "{row}");
+    }
 }

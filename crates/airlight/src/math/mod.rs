@@ -1,6 +1,7 @@
 //! Mathematics without physics: interpolation, quadrature, polynomials, random numbers, SIMD.
 
 pub(crate) mod arctangent;
+pub(crate) mod exponentials;
 pub(crate) mod interpolation;
 pub(crate) mod legendre;
 pub(crate) mod parallel;

@@ -3,6 +3,7 @@
 //! Every operation is a plain loop over a fixed-size array, without branches and without fused multiply-add, so that the
 //! compiler vectorises it and all machines produce the same bits.
 
+use crate::math::exponentials::count_exponentials;
 use std::ops::{Add, AddAssign, Div, Index, IndexMut, Mul, MulAssign, Sub, SubAssign};
 
 /// Values at `N` wavelengths (or, with `N = 3`, red, green and blue).
@@ -54,6 +55,7 @@ impl<const N: usize> Spectrum<N> {
     /// `e^x` of each lane: relative error below 3e-7 for -87 < x < 88; the argument is clamped to that range.
     #[inline(always)]
     pub fn exp(self) -> Self {
+        count_exponentials(N);
         self.map(exp_lane)
     }
 
@@ -61,6 +63,7 @@ impl<const N: usize> Spectrum<N> {
     /// clamped to the smallest normal number.
     #[inline(always)]
     pub fn ln(self) -> Self {
+        count_exponentials(N);
         self.map(ln_lane)
     }
 

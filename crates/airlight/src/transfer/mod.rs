@@ -14,6 +14,7 @@ pub(crate) mod ray;
 pub(crate) mod residual;
 pub(crate) mod shell;
 
+pub use crate::math::exponentials::{count_exponentials, exponentials};
 pub(crate) use path_optics::PathOptics;
 pub use path_optics::RgbPathOptics;
 pub use shell::medium_evaluations;

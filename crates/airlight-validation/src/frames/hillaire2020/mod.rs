@@ -13,6 +13,7 @@ pub use parameters::HillairePassesError;
 use airlight::atmosphere::Atmosphere;
 use airlight::glam::DVec3;
 use airlight_gpu::Camera;
+use airlight_shaders::counting;
 use parameters::Air;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
@@ -48,6 +49,7 @@ pub struct HillairePasses {
     sky: Table,
     aerial: Table,
     compose: wgpu::RenderPipeline,
+    counts: Option<wgpu::Buffer>,
 }
 
 /// A table, and the pass that fills it.
@@ -56,7 +58,15 @@ struct Table {
     view: wgpu::TextureView,
     pipeline: wgpu::ComputePipeline,
     group: wgpu::BindGroup,
+    counts: Option<wgpu::BindGroup>,
     workgroups: [u32; 3],
+}
+
+/// Where shaders are made, and what they count in.
+#[derive(Clone, Copy)]
+struct Workshop<'a> {
+    device: &'a wgpu::Device,
+    counts: Option<&'a wgpu::Buffer>,
 }
 
 impl HillairePasses {
@@ -71,6 +81,32 @@ impl HillairePasses {
         atmosphere: &Atmosphere,
         target_format: wgpu::TextureFormat,
     ) -> Result<Self, HillairePassesError> {
+        Self::with_counts(device, queue, atmosphere, target_format, None)
+    }
+
+    /// As [`Self::new`], with passes that add what they evaluate to the [`Counts`] of a storage buffer: the function whose calls they count
+    /// evaluates the densities of the air. They draw the same, slower.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn counting(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        atmosphere: &Atmosphere,
+        target_format: wgpu::TextureFormat,
+        counts: &wgpu::Buffer,
+    ) -> Result<Self, HillairePassesError> {
+        Self::with_counts(device, queue, atmosphere, target_format, Some(counts))
+    }
+
+    fn with_counts(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        atmosphere: &Atmosphere,
+        target_format: wgpu::TextureFormat,
+        counts: Option<&wgpu::Buffer>,
+    ) -> Result<Self, HillairePassesError> {
+        let workshop = Workshop { device, counts };
         let air = Air::new(atmosphere)?;
         let air_numbers = device.create_buffer_init(&BufferInitDescriptor {
             label: Some("hillaire air"),
@@ -97,14 +133,14 @@ impl HillairePasses {
         let [air_binding, view_binding] = numbers.clone();
         let sampler_binding = || wgpu::BindingResource::Sampler(&clamped);
         let transmittance = Table::new(
-            device,
+            workshop,
             TRANSMITTANCE,
             (&[AIR, include_str!("transmittance.wgsl")], [32, 8, 1]),
             &[(0, air_binding.clone())],
             1,
         );
         let multiple = Table::new(
-            device,
+            workshop,
             MULTIPLE,
             (
                 &[AIR, SUNLIGHT, include_str!("multiple_scattering.wgsl")],
@@ -131,11 +167,12 @@ impl HillairePasses {
             SKY_COORDINATES,
             include_str!("sky_view.wgsl"),
         ];
-        let sky = Table::new(device, SKY, (&sky, [25, 25, 1]), &light, 5);
+        let sky = Table::new(workshop, SKY, (&sky, [25, 25, 1]), &light, 5);
         let aerial = [AIR, SUNLIGHT, MARCH, FRAME, include_str!("aerial.wgsl")];
-        let aerial = Table::new(device, AERIAL, (&aerial, [4, 4, 32]), &light, 5);
+        let aerial = Table::new(workshop, AERIAL, (&aerial, [4, 4, 32]), &light, 5);
         Ok(Self {
-            compose: compose_pipeline(device, target_format),
+            compose: compose_pipeline(workshop, target_format),
+            counts: counts.cloned(),
             around: sampler(wgpu::AddressMode::Repeat),
             device: device.clone(),
             queue: queue.clone(),
@@ -233,6 +270,13 @@ impl HillairePasses {
         });
         pass.set_pipeline(&self.compose);
         pass.set_bind_group(0, &group, &[]);
+        let workshop = Workshop {
+            device: &self.device,
+            counts: self.counts.as_ref(),
+        };
+        if let Some(counts) = workshop.counts_group(|| self.compose.get_bind_group_layout(1)) {
+            pass.set_bind_group(1, &counts, &[]);
+        }
         pass.draw(0..3, 0..1);
     }
 
@@ -248,12 +292,13 @@ impl HillairePasses {
 impl Table {
     /// A table of some size that a shader's entry point `fill` stores through a binding.
     fn new(
-        device: &wgpu::Device,
+        workshop: Workshop<'_>,
         size: [u32; 3],
         (shader, workgroups): (&[&str], [u32; 3]),
         inputs: &[(u32, wgpu::BindingResource<'_>)],
         output: u32,
     ) -> Self {
+        let device = workshop.device;
         let [width, height, depth] = size;
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("hillaire table"),
@@ -276,7 +321,7 @@ impl Table {
         let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some("hillaire table"),
             layout: None,
-            module: &module(device, shader),
+            module: &workshop.module(shader),
             entry_point: Some("fill"),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             cache: None,
@@ -286,6 +331,7 @@ impl Table {
         let group = group(device, &pipeline.get_bind_group_layout(0), &resources);
         Self {
             view,
+            counts: workshop.counts_group(|| pipeline.get_bind_group_layout(1)),
             pipeline,
             group,
             workgroups,
@@ -299,57 +345,76 @@ impl Table {
         });
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.group, &[]);
+        if let Some(counts) = &self.counts {
+            pass.set_bind_group(1, counts, &[]);
+        }
         let [x, y, z] = self.workgroups;
         pass.dispatch_workgroups(x, y, z);
     }
 }
 
 /// The pass that adds light, and multiplies by alpha what the frame holds.
-fn compose_pipeline(device: &wgpu::Device, format: wgpu::TextureFormat) -> wgpu::RenderPipeline {
+fn compose_pipeline(workshop: Workshop<'_>, format: wgpu::TextureFormat) -> wgpu::RenderPipeline {
     let compose = include_str!("compose.wgsl");
     let shader = [AIR, SUNLIGHT, MARCH, SKY_COORDINATES, FRAME, compose];
-    let shader = module(device, &shader);
+    let shader = workshop.module(&shader);
     let component = |src_factor, dst_factor| wgpu::BlendComponent {
         src_factor,
         dst_factor,
         operation: wgpu::BlendOperation::Add,
     };
     let (zero, one) = (wgpu::BlendFactor::Zero, wgpu::BlendFactor::One);
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("hillaire compose"),
-        layout: None,
-        vertex: wgpu::VertexState {
-            module: &shader,
-            entry_point: Some("corner"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &shader,
-            entry_point: Some("compose"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(wgpu::ColorTargetState {
-                format,
-                blend: Some(wgpu::BlendState {
-                    color: component(one, wgpu::BlendFactor::SrcAlpha),
-                    alpha: component(zero, one),
-                }),
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
+    workshop
+        .device
+        .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("hillaire compose"),
+            layout: None,
+            vertex: wgpu::VertexState {
+                module: &shader,
+                entry_point: Some("corner"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: None,
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &shader,
+                entry_point: Some("compose"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &[Some(wgpu::ColorTargetState {
+                    format,
+                    blend: Some(wgpu::BlendState {
+                        color: component(one, wgpu::BlendFactor::SrcAlpha),
+                        alpha: component(zero, one),
+                    }),
+                    write_mask: wgpu::ColorWrites::ALL,
+                })],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
 }
 
-fn module(device: &wgpu::Device, parts: &[&str]) -> wgpu::ShaderModule {
-    device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("hillaire"),
-        source: wgpu::ShaderSource::Wgsl(parts.concat().into()),
-    })
+impl Workshop<'_> {
+    fn module(self, parts: &[&str]) -> wgpu::ShaderModule {
+        let text = parts.concat();
+        let text = match self.counts {
+            Some(_) => counting(&text, (1, 0), "medium_at").expect("shaders that are valid"),
+            None => text,
+        };
+        self.device
+            .create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("hillaire"),
+                source: wgpu::ShaderSource::Wgsl(text.into()),
+            })
+    }
+
+    /// The group of what is counted.
+    fn counts_group(self, layout: impl Fn() -> wgpu::BindGroupLayout) -> Option<wgpu::BindGroup> {
+        let counts = self.counts?.as_entire_binding();
+        Some(group(self.device, &layout(), &[(0, counts)]))
+    }
 }
 
 fn group(

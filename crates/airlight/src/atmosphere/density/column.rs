@@ -1,6 +1,7 @@
 //! Integrals of density along rays.
 
 use crate::atmosphere::ray_segment::RaySegment;
+use crate::math::exponentials::count_exponentials;
 use crate::math::quadrature::FixedRule;
 
 /// Quadrature rule for each part of a ray.
@@ -12,6 +13,7 @@ pub(super) const MAX_LN_DENSITY: f64 = 57.0;
 /// Density that has decayed over `heights` scale heights (negative: increased), at most `e^57`.
 #[inline]
 pub(super) fn decayed(heights: f64) -> f64 {
+    count_exponentials(1);
     (-heights).min(MAX_LN_DENSITY).exp()
 }
 

@@ -1,6 +1,7 @@
 //! [`AltitudeTable`]: densities tabulated by altitude.
 
 use super::error::DensityError;
+use crate::math::exponentials::count_exponentials;
 use crate::math::interpolation::lerp;
 use crate::names::named;
 
@@ -94,7 +95,10 @@ impl AltitudeTable {
         let (d0, d1) = (self.densities[above - 1], self.densities[above]);
         let t = (z - z0) / (z1 - z0);
         match self.is_log(d0, d1) {
-            true => d0 * (t * (d1 / d0).ln()).exp(),
+            true => {
+                count_exponentials(2);
+                d0 * (t * (d1 / d0).ln()).exp()
+            }
             false => lerp(d0, d1, t),
         }
     }
