@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let ridge = ridges.into_iter().find(covers);
         ridge.map_or(f32::INFINITY, |(distance_m, _)| distance_m)
     };
-    let camera = frame.camera(EXPOSURE);
+    let camera = frame.camera(EXPOSURE)?;
     let hills = Geometry {
         colour,
         distance_m: &distance_m,

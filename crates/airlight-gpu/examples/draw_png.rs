@@ -66,7 +66,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         colour: [0.0; 3],
         distance_m: &hills,
     };
-    let camera = frame.camera(frame_exposure);
+    let camera = frame.camera(frame_exposure)?;
     let pixels = gpu.draw(&frame, Some(&geometry), |encoder, target, depth| {
         renderer.record(encoder, target, depth, &camera);
     })?;

@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         colour: (level * exposure * 0.04 / PI).as_dvec3().to_array(),
         distance_m: &distance_m,
     };
-    let camera = frame.camera(exposure);
+    let camera = frame.camera(exposure)?;
     let pixels = program.draw(&frame, Some(&towers), |encoder, target, depth| {
         sky.record(encoder, target, depth, &camera);
     })?;

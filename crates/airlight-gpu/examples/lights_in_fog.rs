@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         colour: [0.0; 3],
         distance_m: &distance_m,
     };
-    let camera = frame.camera(EXPOSURE);
+    let camera = frame.camera(EXPOSURE)?;
     let pixels = program.draw(&frame, Some(&wall), |encoder, target, depth| {
         sky.record(encoder, target, depth, &camera);
     })?;

@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         colour: colour.to_array(),
         distance_m: &distance_m,
     };
-    let camera = frame.camera(exposure);
+    let camera = frame.camera(exposure)?;
     let pixels = program.draw(&frame, Some(&hills), |encoder, target, depth| {
         sky.record(encoder, target, depth, &camera);
     })?;

@@ -29,19 +29,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let ground = mountains()?;
     let eye_m = DVec3::new(0.0, ground.height_m([0.0; 2]) + 60.0, 0.0);
     sky.update(eye_m.y, sun)?;
-    let mut terrain = TerrainPass::new(&program.device, &program.queue, FORMAT);
+    let mut terrain = TerrainPass::new(&program.device, &program.queue, FORMAT)?;
     terrain.set_heights(&ground);
     let lighting = *sky.lighting().ok_or("expected light after an update")?;
-    let view = TerrainView {
-        eye_m,
-        planet_radius_m: air.planet.radius_m,
-        lighting,
-        level_albedo: [0.05, 0.07, 0.03],
-        steep_albedo: [0.16, 0.15, 0.13],
-    };
+    let albedos = [[0.05, 0.07, 0.03], [0.16, 0.15, 0.13]];
+    let view = TerrainView::new(eye_m, air.planet.radius_m, lighting, albedos)?;
     let exposure = 1.0 / lighting.sky_illuminance_lx(Vec3::Y).y;
     let frame = Frame::towards(look, SIDE);
-    let camera = frame.camera(exposure);
+    let camera = frame.camera(exposure)?;
     let has_shadows = arguments.get(4).is_none_or(|text| text == "shadows");
     let depth = depth_texture(&program.device);
     let pixels = program.draw(&frame, None, |encoder, target, _| {

@@ -43,15 +43,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     near.set_discs(false);
 
     let frame = Frame::towards(axes::direction(205.0, 24.0).as_vec3(), 640);
-    let camera = frame.camera(EXPOSURE);
+    let camera = frame.camera(EXPOSURE)?;
     let turn = Mat4::from_mat3(to_far.as_mat3());
-    let far_camera = Camera {
-        projection: Projection::Perspective {
-            world_from_clip: turn * frame.clip_from_world.inverse(),
-            far_depth: 0.0,
-        },
-        ..camera
+    let turned = Projection::Perspective {
+        world_from_clip: turn * frame.clip_from_world.inverse(),
+        far_depth: 0.0,
     };
+    let far_camera = Camera::new(turned, EXPOSURE)?;
     let pixels = program.draw(&frame, None, |encoder, target, depth| {
         far.record(encoder, target, depth, &far_camera);
         near.record(encoder, target, depth, &camera);

@@ -1,5 +1,6 @@
 //! [`Camera`] and [`Projection`].
 
+use crate::error::{SkyRendererError, is_invertible, require};
 use airlight::axes;
 use glam::{DVec2, DVec3, Mat4};
 use std::f32::consts::{FRAC_PI_2, PI};
@@ -15,10 +16,8 @@ const MARGIN: f64 = 2.0;
 /// Where the pixels of a frame look.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Directions of the pixels.
-    pub projection: Projection,
-    /// What luminances in cd/m^2 are multiplied by before they reach the target, which a half float holds up to 65504.
-    pub exposure: f32,
+    projection: Projection,
+    exposure: f32,
 }
 
 /// Mapping of directions to the pixels of a frame, and what their depth means.
@@ -51,7 +50,88 @@ pub enum Projection {
     },
 }
 
+impl Projection {
+    fn check(&self) -> Result<(), SkyRendererError> {
+        match self {
+            Self::Perspective {
+                world_from_clip,
+                far_depth,
+            } => {
+                require(
+                    is_invertible(world_from_clip),
+                    "a finite matrix from clip space to the world that has an inverse",
+                    world_from_clip,
+                )?;
+                require(
+                    (0.0..=1.0).contains(far_depth),
+                    "a depth without geometry from 0 to 1, with reversed depth 0",
+                    far_depth,
+                )
+            }
+            Self::Fisheye {
+                axes,
+                half_angles_rad,
+                largest_rad,
+            } => {
+                const TOLERANCE: f64 = 1e-3;
+                let [right, up, forward] = *axes;
+                let across = [right.dot(up), up.dot(forward), forward.dot(right)];
+                let lengths = axes.map(|axis| axis.length_squared() - 1.0);
+                let errors = across.into_iter().chain(lengths);
+                require(
+                    { errors }.all(|error| error.abs() < TOLERANCE),
+                    "unit vectors to the right, up and forward of the fisheye at right angles",
+                    axes,
+                )?;
+                require(
+                    half_angles_rad.iter().all(|a| *a > 0.0 && a.is_finite()),
+                    "finite angles above 0 from the centre to the edges of the fisheye",
+                    half_angles_rad,
+                )?;
+                require(
+                    *largest_rad > 0.0 && *largest_rad <= PI,
+                    "an angle from the centre of the fisheye to its circle above 0, up to pi",
+                    largest_rad,
+                )
+            }
+            Self::Equirectangular { center_azimuth_deg } => require(
+                center_azimuth_deg.is_finite(),
+                "a finite azimuth of the centre",
+                center_azimuth_deg,
+            ),
+        }
+    }
+}
+
 impl Camera {
+    /// A camera with an exposure: what luminances in cd/m^2 are multiplied by before they reach the target, which a half float holds up to
+    /// 65504.
+    ///
+    /// # Errors
+    /// [`SkyRendererError::OutOfRange`] for an exposure that is negative or not finite, and for a projection that maps no pixels to directions.
+    pub fn new(projection: Projection, exposure: f32) -> Result<Self, SkyRendererError> {
+        require(
+            exposure >= 0.0 && exposure.is_finite(),
+            "a finite exposure of the camera, 0 or more",
+            &exposure,
+        )?;
+        projection.check()?;
+        Ok(Self {
+            projection,
+            exposure,
+        })
+    }
+
+    /// Directions of the pixels.
+    pub fn projection(&self) -> Projection {
+        self.projection
+    }
+
+    /// What luminances in cd/m^2 are multiplied by.
+    pub fn exposure(&self) -> f32 {
+        self.exposure
+    }
+
     /// The numbers of the shader's struct `Camera`.
     pub(crate) fn numbers(&self) -> Vec<f32> {
         let (kind, matrix, far_depth, [across, up], largest) = match self.projection {
@@ -144,13 +224,76 @@ mod tests {
             [0.0, 0.0, 0.0, -1.0],
             [0.0, 0.0, 0.1, 0.0],
         ]);
-        Camera {
-            projection: Projection::Perspective {
-                world_from_clip: (projection * view).inverse(),
-                far_depth: 0.0,
-            },
-            exposure: 1.0,
+        let perspective = Projection::Perspective {
+            world_from_clip: (projection * view).inverse(),
+            far_depth: 0.0,
+        };
+        Camera::new(perspective, 1.0).unwrap()
+    }
+
+    fn refusal(projection: Projection, exposure: f32) -> String {
+        Camera::new(projection, exposure).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn cameras_that_see_nothing_are_refused() {
+        let perspective = camera().projection();
+        for exposure in [-1.0, f32::NAN, f32::INFINITY] {
+            let refusal = refusal(perspective, exposure);
+            assert!(
+                refusal.starts_with("expected a finite exposure"),
+                "{refusal}"
+            );
         }
+        let Projection::Perspective {
+            world_from_clip, ..
+        } = perspective
+        else {
+            panic!("a perspective");
+        };
+        let flat = Mat4::from_diagonal(glam::Vec4::new(1.0, 1.0, 0.0, 1.0));
+        for (world_from_clip, far_depth, word) in [
+            (flat, 0.0, "inverse"),
+            (world_from_clip * f32::NAN, 0.0, "inverse"),
+            (world_from_clip * f32::INFINITY, 0.0, "inverse"),
+            (world_from_clip, -1.0, "depth"),
+            (world_from_clip, f32::NAN, "depth"),
+        ] {
+            let projection = Projection::Perspective {
+                world_from_clip,
+                far_depth,
+            };
+            let refusal = refusal(projection, 1.0);
+            assert!(refusal.contains(word), "{refusal}");
+        }
+        let fisheye = |axes, half_angle: f32, largest_rad| Projection::Fisheye {
+            axes,
+            half_angles_rad: [1.0, half_angle],
+            largest_rad,
+        };
+        let straight = [DVec3::X, DVec3::Y, DVec3::NEG_Z];
+        assert!(Camera::new(fisheye(straight, 1.0, PI), 0.0).is_ok());
+        for (axes, half_angle, largest_rad, word) in [
+            ([DVec3::X, DVec3::X, DVec3::NEG_Z], 1.0, 1.0, "right angles"),
+            ([DVec3::X, DVec3::Y, DVec3::ZERO], 1.0, 1.0, "right angles"),
+            (
+                [DVec3::X, DVec3::NAN, DVec3::NEG_Z],
+                1.0,
+                1.0,
+                "right angles",
+            ),
+            (straight, 0.0, 1.0, "edges"),
+            (straight, f32::NAN, 1.0, "edges"),
+            (straight, 1.0, f32::NAN, "circle"),
+            (straight, 1.0, 4.0, "circle"),
+        ] {
+            let refusal = refusal(fisheye(axes, half_angle, largest_rad), 1.0);
+            assert!(refusal.contains(word), "{refusal}");
+        }
+        let turned = Projection::Equirectangular {
+            center_azimuth_deg: f64::INFINITY,
+        };
+        assert!(refusal(turned, 1.0).contains("azimuth"));
     }
 
     #[test]

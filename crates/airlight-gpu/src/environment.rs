@@ -222,8 +222,8 @@ impl EnvironmentMap {
             let world_from_clip = Mat4::from_cols(
                 right.extend(0.0),
                 up.extend(0.0),
-                Vec4::ZERO,
-                forward.extend(1.0),
+                Vec4::W,
+                forward.extend(0.0),
             );
             (face_view(&self.source, layer, 0), world_from_clip)
         })

@@ -3,6 +3,8 @@
 use airlight::fog::FogError;
 use airlight::sky::SkyError;
 use airlight_shaders::{FogTablesError, SkyTablesError};
+use glam::Mat4;
+use std::fmt::Debug;
 
 /// Error of [`SkyRenderer`](crate::SkyRenderer).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -79,7 +81,37 @@ pub enum SkyRendererError {
         /// What it is.
         got: f64,
     },
+    /// A number of a [`Camera`](crate::Camera), of [`ToneSettings`](crate::ToneSettings), of a [`ShadowMap`](crate::ShadowMap) or of a
+    /// [`TerrainView`](crate::TerrainView) is out of range.
+    #[error("expected {expected}, got {got}")]
+    OutOfRange {
+        /// The number, whose it is, and its range.
+        expected: &'static str,
+        /// What it is.
+        got: String,
+    },
     /// The direction to the sun, or to the moon, has no length.
     #[error("expected a direction to the sun or the moon, got {0}")]
     Sun(airlight::glam::DVec3),
+}
+
+/// Refuses a number that does not hold what is expected of it.
+pub(crate) fn require(
+    holds: bool,
+    expected: &'static str,
+    got: &dyn Debug,
+) -> Result<(), SkyRendererError> {
+    match holds {
+        true => Ok(()),
+        false => Err(SkyRendererError::OutOfRange {
+            expected,
+            got: format!("{got:?}"),
+        }),
+    }
+}
+
+/// Whether a matrix maps space to all of space.
+pub(crate) fn is_invertible(matrix: &Mat4) -> bool {
+    let determinant = matrix.as_dmat4().determinant();
+    determinant.is_finite() && determinant != 0.0
 }

@@ -2,6 +2,7 @@
 //! pixels.
 
 use crate::camera::{Camera, Projection};
+use crate::error::SkyRendererError;
 use crate::pass::{bytes, filled};
 use crate::passes::SkyPasses;
 use crate::read::{ReadTextureError, read_buffer, read_rgb};
@@ -103,14 +104,15 @@ impl Frame {
     }
 
     /// The camera of the frame.
-    pub fn camera(&self, exposure: f32) -> Camera {
-        Camera {
-            projection: Projection::Perspective {
-                world_from_clip: self.clip_from_world.inverse(),
-                far_depth: 0.0,
-            },
-            exposure,
-        }
+    ///
+    /// # Errors
+    /// As [`Camera::new`].
+    pub fn camera(&self, exposure: f32) -> Result<Camera, SkyRendererError> {
+        let perspective = Projection::Perspective {
+            world_from_clip: self.clip_from_world.inverse(),
+            far_depth: 0.0,
+        };
+        Camera::new(perspective, exposure)
     }
 
     /// Unit vector through the middle of a pixel.

@@ -1,5 +1,7 @@
 //! Passes that cover a target; over a frame, one dims it and one adds light.
 
+use crate::error::{SkyRendererError, require};
+
 /// The vertex stage of [`covering`] pipelines.
 pub const CORNER: &str = include_str!("corner.wgsl");
 
@@ -36,6 +38,24 @@ pub fn covering(
         multiview_mask: None,
         cache: None,
     })
+}
+
+/// Refuses targets that are not of colours, or that a device cannot draw into.
+pub fn check_target(
+    device: &wgpu::Device,
+    format: wgpu::TextureFormat,
+) -> Result<(), SkyRendererError> {
+    let features = device.features();
+    let of_format = format.guaranteed_format_features(features);
+    let usages = of_format.allowed_usages;
+    let is_colour = !format.has_depth_aspect() && !format.has_stencil_aspect();
+    let sample_type = format.sample_type(None, Some(features));
+    let is_float = matches!(sample_type, Some(wgpu::TextureSampleType::Float { .. }));
+    require(
+        is_colour && is_float && usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT),
+        "a target format of colours that are no integers, which the device can draw into",
+        &format,
+    )
 }
 
 /// Layout of a group of the fragment stage, by binding.

@@ -287,25 +287,29 @@ impl SkyPasses {
 
     /// Records the light of sky, ground and fog around the eye into a map, in cd/m^2 times an exposure. Before the first tables it records
     /// nothing.
+    ///
+    /// # Errors
+    /// [`SkyRendererError::OutOfRange`] for an exposure that is negative or not finite.
     pub fn record_environment(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         map: &mut EnvironmentMap,
         exposure: f32,
-    ) {
+    ) -> Result<(), SkyRendererError> {
+        let faces = map.faces().map(|(target, world_from_clip)| {
+            let perspective = Projection::Perspective {
+                world_from_clip,
+                far_depth: 0.0,
+            };
+            Ok((target, Camera::new(perspective, exposure)?))
+        });
+        let faces: Vec<_> = faces.collect::<Result<_, SkyRendererError>>()?;
         let Some(drawn) = &self.drawn else {
-            return;
+            return Ok(());
         };
         map.clear_depth(encoder);
         let black = wgpu::LoadOp::Clear(wgpu::Color::BLACK);
-        for (target, world_from_clip) in map.faces() {
-            let camera = Camera {
-                projection: Projection::Perspective {
-                    world_from_clip,
-                    far_depth: 0.0,
-                },
-                exposure,
-            };
+        for (target, camera) in faces {
             let [sky, fog] = map.passes();
             let passes = Passes {
                 sky,
@@ -324,6 +328,7 @@ impl SkyPasses {
             );
         }
         map.filter(encoder);
+        Ok(())
     }
 
     /// What passes know of the pixels of a frame. A group for each frame, as an encoder may record several.
@@ -547,7 +552,7 @@ mod tests {
                     usage: usages.into_iter().collect(),
                     mapped_at_creation: false,
                 }),
-                camera: frame.camera(1e-4),
+                camera: frame.camera(1e-4).unwrap(),
                 passes,
                 frame,
                 gpu,

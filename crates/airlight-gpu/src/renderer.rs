@@ -396,13 +396,16 @@ impl SkyRenderer {
 
     /// Records the light of sky, ground and fog around the eye into a map, in cd/m^2 times an exposure. Before the first tables it records
     /// nothing.
+    ///
+    /// # Errors
+    /// [`SkyRendererError::OutOfRange`] for an exposure that is negative or not finite.
     pub fn record_environment(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         map: &mut EnvironmentMap,
         exposure: f32,
-    ) {
-        self.passes.record_environment(encoder, map, exposure);
+    ) -> Result<(), SkyRendererError> {
+        self.passes.record_environment(encoder, map, exposure)
     }
 
     /// What has been computed so far.

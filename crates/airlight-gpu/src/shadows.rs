@@ -1,5 +1,6 @@
 //! [`SunShadows`]: shadows in air and fog, of ground or from a shadow map.
 
+use crate::error::{SkyRendererError, is_invertible, require};
 use crate::gpu_tables::{self, FLAT};
 use crate::pass::{UNIFORM, bind_group, group_layout, texture, uniform};
 use glam::Mat4;
@@ -83,7 +84,29 @@ pub struct ShadowMap<'a> {
 
 impl SunShadows {
     /// Shadows by a shadow map. Its texture is read when a frame is drawn.
-    pub fn from_map(device: &wgpu::Device, map: &ShadowMap<'_>) -> Self {
+    ///
+    /// # Errors
+    /// [`SkyRendererError::OutOfRange`] for a size that the texture has not, a matrix that has no inverse, and a reach that is not above 0 or
+    /// not finite.
+    pub fn from_map(device: &wgpu::Device, map: &ShadowMap<'_>) -> Result<Self, SkyRendererError> {
+        let texture = map.depth.texture();
+        let largest = [texture.width(), texture.height()];
+        let fits = |(side, most): (&u32, u32)| (1..=most).contains(side);
+        require(
+            map.size.iter().zip(largest).all(fits),
+            "a width and a height of the shadow map from 1 to those of its texture",
+            &map.size,
+        )?;
+        require(
+            is_invertible(&map.clip_from_world),
+            "a finite matrix from the world to the clip space of the shadow map that has an inverse",
+            &map.clip_from_world,
+        )?;
+        require(
+            map.reach_m > 0.0 && map.reach_m.is_finite(),
+            "a finite reach of the shadow map above 0 m",
+            &map.reach_m,
+        )?;
         let mut numbers = map.clip_from_world.to_cols_array().to_vec();
         numbers.extend(map.size.map(|n| n as f32));
         numbers.extend([map.reach_m, if map.is_reversed { -1.0 } else { 1.0 }]);
@@ -93,10 +116,10 @@ impl SunShadows {
             numbers.as_entire_binding(),
             wgpu::BindingResource::TextureView(map.depth),
         ];
-        Self {
+        Ok(Self {
             caster: Caster::Map,
             group: bind_group(device, &Caster::Map.layout(device), label, &resources),
-        }
+        })
     }
 
     /// Shadows of ground by the height of their surface, with the numbers of the shader's struct `Shadow`.
@@ -120,5 +143,59 @@ impl SunShadows {
 
     pub(crate) fn group(&self) -> &wgpu::BindGroup {
         &self.group
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::headless::Headless;
+
+    #[test]
+    fn maps_that_throw_no_shadows_are_refused() {
+        let Headless { device, .. } = Headless::new().unwrap();
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d {
+                width: 16,
+                height: 8,
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Depth32Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        });
+        let right = ShadowMap {
+            depth: &texture.create_view(&Default::default()),
+            size: [16, 8],
+            clip_from_world: Mat4::from_diagonal(glam::Vec4::new(1e-3, 1e-3, 1e-4, 1.0)),
+            is_reversed: false,
+            reach_m: 800.0,
+        };
+        assert!(SunShadows::from_map(&device, &right).is_ok());
+        let refusal = |map| SunShadows::from_map(&device, &map).unwrap_err().to_string();
+        for size in [[0, 8], [17, 8], [8, 16]] {
+            let refusal = refusal(ShadowMap { size, ..right });
+            assert!(refusal.contains("its texture, got ["), "{refusal}");
+        }
+        for clip_from_world in [
+            Mat4::ZERO,
+            Mat4::NAN,
+            right.clip_from_world * f32::INFINITY,
+            Mat4::from_diagonal(glam::Vec4::new(1e-3, 0.0, 1e-4, 1.0)),
+        ] {
+            let refusal = refusal(ShadowMap {
+                clip_from_world,
+                ..right
+            });
+            assert!(refusal.contains("inverse"), "{refusal}");
+        }
+        for reach_m in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+            let refusal = refusal(ShadowMap { reach_m, ..right });
+            assert!(refusal.contains("reach of the shadow map"), "{refusal}");
+        }
     }
 }

@@ -1,10 +1,12 @@
 //! [`HeightField`] and [`TerrainPass`].
 
 use crate::camera::Camera;
-use crate::error::SkyRendererError;
+use crate::error::{SkyRendererError, require};
 use crate::gpu_tables::{self, FLAT};
 use crate::lighting::{DirectLight, Lighting};
-use crate::pass::{CORNER, UNIFORM, bind_group, cover, covering, group_layout, uniform};
+use crate::pass::{
+    CORNER, UNIFORM, bind_group, check_target, cover, covering, group_layout, uniform,
+};
 use crate::shadows::SunShadows;
 use airlight::glam::DVec3;
 use airlight_shaders::twins::texture::Texture;
@@ -169,16 +171,69 @@ impl HeightField {
 /// What a [`TerrainPass`] draws.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TerrainView {
-    /// Place of the eye, m: to the east of the middle of the grid, above the ground of the planet, to the south.
-    pub eye_m: DVec3,
-    /// Radius of the planet, m.
-    pub planet_radius_m: f64,
-    /// Light of sun and sky at the eye.
-    pub lighting: Lighting,
-    /// Albedo of level ground, in linear RGB.
-    pub level_albedo: [f32; 3],
-    /// Albedo of slopes steeper than 45 degrees.
-    pub steep_albedo: [f32; 3],
+    pub(crate) eye_m: DVec3,
+    pub(crate) planet_radius_m: f64,
+    pub(crate) lighting: Lighting,
+    pub(crate) level_albedo: [f32; 3],
+    pub(crate) steep_albedo: [f32; 3],
+}
+
+impl TerrainView {
+    /// Ground on a planet of a radius, m, in the light of sun and sky at the eye. The place of the eye counts, in metres, to the east from
+    /// the middle of the grid, above the ground of the planet, and to the south. The albedos, in linear RGB, are those of level ground and
+    /// of slopes steeper than 45 degrees.
+    ///
+    /// # Errors
+    /// [`SkyRendererError::OutOfRange`] for a place or light that is not finite, a radius that is not above 0, and albedos that are not from
+    /// 0 to 1.
+    pub fn new(
+        eye_m: DVec3,
+        planet_radius_m: f64,
+        lighting: Lighting,
+        [level_albedo, steep_albedo]: [[f32; 3]; 2],
+    ) -> Result<Self, SkyRendererError> {
+        require(eye_m.is_finite(), "a finite place of the eye", &eye_m)?;
+        require(
+            planet_radius_m > 0.0 && planet_radius_m.is_finite(),
+            "a finite radius of the planet above 0 m",
+            &planet_radius_m,
+        )?;
+        for source in [Some(lighting.first()), lighting.second]
+            .into_iter()
+            .flatten()
+        {
+            require(
+                source.direction.try_normalize().is_some(),
+                "a direction to what lights the ground",
+                &source.direction,
+            )?;
+            require(
+                source.illuminance_lx.is_finite(),
+                "a finite illuminance of the ground",
+                &source.illuminance_lx,
+            )?;
+        }
+        let sky = lighting.sky_coefficients_lx;
+        require(
+            sky.iter().all(|of| of.is_finite()),
+            "finite coefficients of the light of the sky on the ground",
+            &sky,
+        )?;
+        for albedo in [level_albedo, steep_albedo] {
+            require(
+                albedo.iter().all(|share| (0.0..=1.0).contains(share)),
+                "an albedo of the ground from 0 to 1",
+                &albedo,
+            )?;
+        }
+        Ok(Self {
+            eye_m,
+            planet_radius_m,
+            lighting,
+            level_albedo,
+            steep_albedo,
+        })
+    }
 }
 
 /// Draws the ground of a [`HeightField`] into a frame, before [`SkyPasses`](crate::SkyPasses) adds the air: by a march along each ray, in
@@ -212,11 +267,15 @@ struct Heights {
 
 impl TerrainPass {
     /// Makes the pipeline for targets of a format. The depth goes into an `R32Float` texture.
+    ///
+    /// # Errors
+    /// [`SkyRendererError::OutOfRange`] for a format that is not of colours, or that the device cannot draw into.
     pub fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         target_format: wgpu::TextureFormat,
-    ) -> Self {
+    ) -> Result<Self, SkyRendererError> {
+        check_target(device, target_format)?;
         let layout = gpu_tables::layout(device, &[FLAT]);
         let camera_layout = group_layout(device, "airlight camera", &[UNIFORM]);
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -264,7 +323,7 @@ impl TerrainPass {
             min_filter: wgpu::FilterMode::Linear,
             ..Default::default()
         });
-        Self {
+        Ok(Self {
             device: device.clone(),
             queue: queue.clone(),
             layout,
@@ -274,7 +333,7 @@ impl TerrainPass {
             heights: None,
             shadow_pipeline: None,
             shadow_surface: None,
-        }
+        })
     }
 
     /// Uploads heights, which are drawn from now on.
@@ -488,18 +547,13 @@ mod tests {
     fn view(eye_m: DVec3, sun_deg: f64) -> TerrainView {
         let mut sky_coefficients_lx = [Vec3::ZERO; 9];
         sky_coefficients_lx[0] = Vec3::splat(1e4);
-        TerrainView {
-            eye_m,
-            planet_radius_m: RADIUS_M,
-            lighting: Lighting {
-                sun: axes::direction(90.0, sun_deg).as_vec3(),
-                sun_illuminance_lx: Vec3::splat(8e4),
-                second: None,
-                sky_coefficients_lx,
-            },
-            level_albedo: [0.2, 0.2, 0.2],
-            steep_albedo: [0.2, 0.2, 0.2],
-        }
+        let lighting = Lighting {
+            sun: axes::direction(90.0, sun_deg).as_vec3(),
+            sun_illuminance_lx: Vec3::splat(8e4),
+            second: None,
+            sky_coefficients_lx,
+        };
+        TerrainView::new(eye_m, RADIUS_M, lighting, [[0.2; 3]; 2]).unwrap()
     }
 
     /// Luminances and distances of the pixels of a fisheye of 180 degrees, 0 where no ground is drawn.
@@ -525,16 +579,14 @@ mod tests {
         let [light, depth] = textures
             .each_ref()
             .map(|t| t.create_view(&Default::default()));
-        let mut pass = TerrainPass::new(&device, &queue, wgpu::TextureFormat::Rgba32Float);
+        let mut pass = TerrainPass::new(&device, &queue, wgpu::TextureFormat::Rgba32Float).unwrap();
         pass.set_heights(field);
-        let camera = Camera {
-            projection: Projection::Fisheye {
-                axes,
-                half_angles_rad: [FRAC_PI_2; 2],
-                largest_rad: FRAC_PI_2,
-            },
-            exposure: 1.0,
+        let fisheye = Projection::Fisheye {
+            axes,
+            half_angles_rad: [FRAC_PI_2; 2],
+            largest_rad: FRAC_PI_2,
         };
+        let camera = Camera::new(fisheye, 1.0).unwrap();
         let mut encoder = device.create_command_encoder(&Default::default());
         pass.record(&mut encoder, &light, &depth, &camera, view);
         queue.submit([encoder.finish()]);
@@ -675,6 +727,49 @@ mod tests {
             met > 500 && missed > 500 && others < 20,
             "{met} {missed} {others}"
         );
+    }
+
+    #[test]
+    fn views_of_no_ground_are_refused() {
+        let right = view(DVec3::Y, 30.0);
+        let refusal = |spoil: &dyn Fn(&mut TerrainView)| {
+            let mut wrong = right;
+            spoil(&mut wrong);
+            let albedos = [wrong.level_albedo, wrong.steep_albedo];
+            let view =
+                TerrainView::new(wrong.eye_m, wrong.planet_radius_m, wrong.lighting, albedos);
+            view.unwrap_err().to_string()
+        };
+        for wrong in [f64::NAN, f64::INFINITY] {
+            assert!(refusal(&|view| view.eye_m.x = wrong).contains("place of the eye"));
+        }
+        for wrong in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
+            let refusal = refusal(&|view| view.planet_radius_m = wrong);
+            assert!(refusal.contains("radius of the planet"), "{refusal}");
+        }
+        for wrong in [f32::NAN, f32::INFINITY] {
+            let refusals = [
+                refusal(&|view| view.lighting.sun_illuminance_lx.y = wrong),
+                refusal(&|view| {
+                    view.lighting.second = Some(DirectLight {
+                        direction: Vec3::Y,
+                        illuminance_lx: Vec3::splat(wrong),
+                    });
+                }),
+            ];
+            assert!(
+                refusals
+                    .iter()
+                    .all(|refusal| refusal.contains("illuminance"))
+            );
+        }
+        for wrong in [f32::NAN, -0.1, 1.1] {
+            let refusal = refusal(&|view| view.steep_albedo[1] = wrong);
+            assert!(refusal.contains("albedo"), "{refusal}");
+        }
+        assert!(refusal(&|view| view.lighting.sun = Vec3::ZERO).contains("direction"));
+        let spoil = |view: &mut TerrainView| view.lighting.sky_coefficients_lx[4].z = f32::NAN;
+        assert!(refusal(&spoil).contains("coefficients"));
     }
 
     #[test]

@@ -1,7 +1,10 @@
 //! [`TonePass`].
 
+use crate::error::{SkyRendererError, require};
 use crate::gpu_tables::FLAT;
-use crate::pass::{CORNER, UNIFORM, bind_group, cover, covering, group_layout, texture, uniform};
+use crate::pass::{
+    CORNER, UNIFORM, bind_group, check_target, cover, covering, group_layout, texture, uniform,
+};
 use airlight_shaders::{Part, source};
 
 /// Curve from exposed light to the light of a display.
@@ -23,26 +26,82 @@ pub enum ToneCurve {
 /// Settings of a [`TonePass`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToneSettings {
-    /// Factor on the light of the frame, in which 0.18 is then middle grey.
-    pub exposure: f32,
-    /// Tone curve.
-    pub curve: ToneCurve,
-    /// Rows of a map of linear sRGB before the curve, such as a white balance.
-    pub colour_map: [[f32; 3]; 3],
-    /// Whether targets of 8 bits are dithered.
-    pub dither: bool,
+    exposure: f32,
+    curve: ToneCurve,
+    /// Rows of a map of linear sRGB before the curve.
+    colour_map: [[f32; 3]; 3],
+    has_dither: bool,
+}
+
+impl ToneSettings {
+    /// A factor on the light of the frame, in which 0.18 is then middle grey, and a curve. Targets of 8 bits are dithered.
+    ///
+    /// # Errors
+    /// [`SkyRendererError::OutOfRange`] for a factor that is negative or not finite, and numbers of the curve out of their ranges.
+    pub fn new(exposure: f32, curve: ToneCurve) -> Result<Self, SkyRendererError> {
+        require(
+            exposure >= 0.0 && exposure.is_finite(),
+            "a finite exposure of the tone pass, 0 or more",
+            &exposure,
+        )?;
+        if let ToneCurve::Camera {
+            contrast,
+            saturation,
+        } = curve
+        {
+            require(
+                (0.5..=3.0).contains(&contrast),
+                "a contrast of the tone curve from 0.5 to 3",
+                &contrast,
+            )?;
+            require(
+                (0.0..=3.0).contains(&saturation),
+                "a saturation of the tone curve from 0 to 3",
+                &saturation,
+            )?;
+        }
+        Ok(Self {
+            exposure,
+            curve,
+            ..Self::default()
+        })
+    }
+
+    /// With the rows of a map of linear sRGB before the curve, such as a white balance.
+    ///
+    /// # Errors
+    /// [`SkyRendererError::OutOfRange`] for numbers that are not finite.
+    pub fn with_colour_map(self, colour_map: [[f32; 3]; 3]) -> Result<Self, SkyRendererError> {
+        let are_finite = colour_map.as_flattened().iter().all(|v| v.is_finite());
+        require(are_finite, "a finite map of colours", &colour_map)?;
+        Ok(Self { colour_map, ..self })
+    }
+
+    /// Without dither.
+    pub fn without_dither(self) -> Self {
+        Self {
+            has_dither: false,
+            ..self
+        }
+    }
+}
+
+impl Default for ToneCurve {
+    fn default() -> Self {
+        Self::Camera {
+            contrast: 1.2,
+            saturation: 1.0,
+        }
+    }
 }
 
 impl Default for ToneSettings {
     fn default() -> Self {
         Self {
             exposure: 1.0,
-            curve: ToneCurve::Camera {
-                contrast: 1.2,
-                saturation: 1.0,
-            },
+            curve: ToneCurve::default(),
             colour_map: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-            dither: true,
+            has_dither: true,
         }
     }
 }
@@ -58,7 +117,14 @@ pub struct TonePass {
 
 impl TonePass {
     /// Makes the pipeline for targets of a format.
-    pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
+    ///
+    /// # Errors
+    /// [`SkyRendererError::OutOfRange`] for a format that is not of colours, or that the device cannot draw into.
+    pub fn new(
+        device: &wgpu::Device,
+        format: wgpu::TextureFormat,
+    ) -> Result<Self, SkyRendererError> {
+        check_target(device, format)?;
         let layout = group_layout(device, "airlight tone", &[UNIFORM, texture(FLAT, false)]);
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("airlight tone"),
@@ -70,12 +136,12 @@ impl TonePass {
             label: Some("airlight tone"),
             source: wgpu::ShaderSource::Wgsl(text.into()),
         });
-        Self {
+        Ok(Self {
             pipeline: covering(device, &pipeline_layout, &shader, "show", (format, None)),
             device: device.clone(),
             layout,
             format,
-        }
+        })
     }
 
     /// Records the pass from `frame`, linear sRGB, to a target of the same size.
@@ -111,7 +177,7 @@ impl TonePass {
         let encodes = !self.format.is_srgb();
         let levels = match self.format {
             wgpu::TextureFormat::Rgba8Unorm | wgpu::TextureFormat::Bgra8Unorm
-                if settings.dither =>
+                if settings.has_dither =>
             {
                 255.0
             }
@@ -125,5 +191,63 @@ impl TonePass {
         ]);
         all.extend([levels, f32::from(u8::from(encodes)), 0.0, 0.0]);
         all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::TerrainPass;
+    use crate::headless::Headless;
+
+    #[test]
+    fn targets_that_are_no_displays_are_refused() {
+        let Headless { device, queue, .. } = Headless::new().unwrap();
+        for format in [
+            wgpu::TextureFormat::Depth32Float,
+            wgpu::TextureFormat::Rgba8Uint,
+            wgpu::TextureFormat::Bc1RgbaUnorm,
+        ] {
+            let terrain = TerrainPass::new(&device, &queue, format);
+            for refused in [TonePass::new(&device, format).err(), terrain.err()] {
+                let refusal = refused.unwrap().to_string();
+                assert!(refusal.contains(&format!("got {format:?}")), "{refusal}");
+            }
+        }
+        for format in [
+            wgpu::TextureFormat::Bgra8UnormSrgb,
+            wgpu::TextureFormat::Rgba16Float,
+        ] {
+            assert!(TonePass::new(&device, format).is_ok(), "{format:?}");
+        }
+    }
+
+    #[test]
+    fn tones_out_of_range_are_refused() {
+        let camera = |contrast, saturation| ToneCurve::Camera {
+            contrast,
+            saturation,
+        };
+        let usual = camera(1.2, 1.0);
+        assert_eq!(ToneSettings::new(1.0, usual), Ok(ToneSettings::default()));
+        for (exposure, curve, word) in [
+            (-1.0, ToneCurve::Agx, "exposure"),
+            (f32::NAN, ToneCurve::Clip, "exposure"),
+            (f32::INFINITY, usual, "exposure"),
+            (1.0, camera(0.4, 1.0), "contrast"),
+            (1.0, camera(f32::NAN, 1.0), "contrast"),
+            (1.0, camera(1.0, -0.1), "saturation"),
+            (1.0, camera(1.0, f32::INFINITY), "saturation"),
+        ] {
+            let refusal = ToneSettings::new(exposure, curve).unwrap_err();
+            assert!(refusal.to_string().contains(word), "{refusal}");
+        }
+        for wrong in [f32::NAN, f32::NEG_INFINITY] {
+            let mut map = [[1.0; 3]; 3];
+            map[2][1] = wrong;
+            let refused = ToneSettings::default().with_colour_map(map);
+            let refusal = refused.unwrap_err().to_string();
+            assert!(refusal.starts_with("expected a finite map"), "{refusal}");
+        }
     }
 }

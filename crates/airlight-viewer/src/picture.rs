@@ -90,16 +90,12 @@ impl Shot {
             }
             _ => return None,
         };
-        Some(Camera {
-            projection,
-            exposure: self.exposure,
-        })
+        Camera::new(projection, self.exposure).ok()
     }
 }
 
 /// The tone settings of a scene's output. Values that are out of range count as not set.
 pub fn tone_of(output: &OutputSpec) -> ToneSettings {
-    let usual = ToneSettings::default();
     let curve = match tone_curve(output) {
         tone::ToneCurve::Agx(_) => ToneCurve::Agx,
         tone::ToneCurve::Clip => ToneCurve::Clip,
@@ -107,18 +103,14 @@ pub fn tone_of(output: &OutputSpec) -> ToneSettings {
             contrast: camera.contrast as f32,
             saturation: camera.saturation as f32,
         },
-        _ => usual.curve,
+        _ => ToneCurve::default(),
     };
-    let balance = output.white_balance_k.map(WhiteBalance::new);
-    let colour_map = match balance {
-        Some(Ok(balance)) => balance.matrix(),
-        _ => usual.colour_map,
-    };
-    ToneSettings {
-        curve,
-        colour_map,
-        ..usual
+    let settings = ToneSettings::new(1.0, curve).unwrap_or_default();
+    match output.white_balance_k.map(WhiteBalance::new) {
+        Some(Ok(balance)) => settings.with_colour_map(balance.matrix()),
+        _ => Ok(settings),
     }
+    .unwrap_or(settings)
 }
 
 /// The same on the processor, for a factor on light in cd/m^2; `None` for settings out of range.
@@ -166,7 +158,7 @@ impl Picture {
             sky: SkyPasses::new(device, queue, LIGHT)?,
             terrain: None,
             eye_m: [0.0; 2],
-            tone: TonePass::new(device, SHOWN),
+            tone: TonePass::new(device, SHOWN)?,
             targets: None,
             timers: None,
         })
@@ -188,9 +180,17 @@ impl Picture {
     }
 
     /// Draws ground of these heights from now on, in pictures that have any.
-    pub fn set_heights(&mut self, heights: &HeightField) {
-        let pass = || TerrainPass::new(&self.device, &self.queue, LIGHT);
-        self.terrain.get_or_insert_with(pass).set_heights(heights);
+    ///
+    /// # Errors
+    /// [`SkyRendererError`] for a device that cannot draw it.
+    pub fn set_heights(&mut self, heights: &HeightField) -> Result<(), SkyRendererError> {
+        let mut pass = match self.terrain.take() {
+            Some(pass) => pass,
+            None => TerrainPass::new(&self.device, &self.queue, LIGHT)?,
+        };
+        pass.set_heights(heights);
+        self.terrain = Some(pass);
+        Ok(())
     }
 
     /// Draws a picture. True if the texture of [`Self::shown`] is a new one.
@@ -291,13 +291,9 @@ impl Picture {
     pub fn terrain_view(&self, ground: &Ground) -> Option<TerrainView> {
         let [height_m, planet_radius_m] = self.eye_m;
         let [east_m, south_m] = ground.place_m;
-        Some(TerrainView {
-            eye_m: DVec3::new(east_m, height_m, south_m),
-            planet_radius_m,
-            lighting: *self.sky.lighting()?,
-            level_albedo: LEVEL_ALBEDO,
-            steep_albedo: STEEP_ALBEDO,
-        })
+        let eye_m = DVec3::new(east_m, height_m, south_m);
+        let albedos = [LEVEL_ALBEDO, STEEP_ALBEDO];
+        TerrainView::new(eye_m, planet_radius_m, *self.sky.lighting()?, albedos).ok()
     }
 
     /// What is shown: signals of sRGB.
@@ -513,7 +509,7 @@ mod tests {
             SHOWN,
             wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
         );
-        let pass = TonePass::new(&device, SHOWN);
+        let pass = TonePass::new(&device, SHOWN).unwrap();
         let camera = |contrast, saturation, kelvin| OutputSpec {
             tone: Some(ToneKind::Camera),
             tone_contrast: contrast,

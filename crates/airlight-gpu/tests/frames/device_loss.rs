@@ -25,8 +25,8 @@ fn lost_devices_are_errors_and_others_draw_the_same() {
     let frame = Frame::towards(sun.as_vec3(), SIDE);
     let before = draw(&lost, &mut renderer, &frame, 1e-4, None);
     let mut map = renderer.environment_map(16).unwrap();
-    let mut terrain = TerrainPass::new(&lost.device, &lost.queue, FORMAT);
-    let tone = TonePass::new(&lost.device, wgpu::TextureFormat::Rgba8Unorm);
+    let mut terrain = TerrainPass::new(&lost.device, &lost.queue, FORMAT).unwrap();
+    let tone = TonePass::new(&lost.device, wgpu::TextureFormat::Rgba8Unorm).unwrap();
     let mut timers = PassTimers::new(&lost.device, &lost.queue, 1);
     assert!(!is_device_lost(&lost.device));
 
@@ -42,13 +42,8 @@ fn lost_devices_are_errors_and_others_draw_the_same() {
     renderer.set_lights(&[Light::Point(light)]).unwrap();
     let heights = HeightField::new([2, 2], [100.0; 2], vec![0.0; 4]).unwrap();
     terrain.set_heights(&heights);
-    let view = TerrainView {
-        eye_m: DVec3::Y * 2.0,
-        planet_radius_m: 6.36e6,
-        lighting: *renderer.lighting().unwrap(),
-        level_albedo: [0.1; 3],
-        steep_albedo: [0.1; 3],
-    };
+    let lighting = *renderer.lighting().unwrap();
+    let view = TerrainView::new(DVec3::Y * 2.0, 6.36e6, lighting, [[0.1; 3]; 2]).unwrap();
     let walls = Geometry {
         colour: [1.0; 3],
         distance_m: &|_, _| 100.0,
@@ -68,7 +63,7 @@ fn lost_devices_are_errors_and_others_draw_the_same() {
         view_formats: &[],
     });
     let display = display.create_view(&wgpu::TextureViewDescriptor::default());
-    let camera = frame.camera(1e-4);
+    let camera = frame.camera(1e-4).unwrap();
     let read = lost.draw(&frame, Some(&walls), |encoder, target, depth| {
         if let Some(timers) = &timers {
             timers.stamp(encoder, 0);
@@ -77,7 +72,9 @@ fn lost_devices_are_errors_and_others_draw_the_same() {
         terrain.record(encoder, target, depth, &camera, &view);
         let shadows = terrain.shadows(encoder, &view);
         renderer.record_shadowed(encoder, target, depth, &camera, shadows.as_ref());
-        renderer.record_environment(encoder, &mut map, 1e-4);
+        renderer
+            .record_environment(encoder, &mut map, 1e-4)
+            .unwrap();
         tone.record(encoder, target, &display, &ToneSettings::default());
     });
     assert!(read.is_err());

@@ -97,15 +97,13 @@ impl Scene {
         renderer
             .update(HEIGHT_M, around_eye.transform_vector3(self.sun))
             .unwrap();
-        let camera = Camera {
-            projection: Projection::Perspective {
-                world_from_clip: (self.clip_from_planet * planet_from_eye)
-                    .inverse()
-                    .as_mat4(),
-                far_depth: 0.0,
-            },
-            exposure: EXPOSURE,
+        let perspective = Projection::Perspective {
+            world_from_clip: (self.clip_from_planet * planet_from_eye)
+                .inverse()
+                .as_mat4(),
+            far_depth: 0.0,
         };
+        let camera = Camera::new(perspective, EXPOSURE).unwrap();
         let map = ShadowMap {
             depth: &disc.map(gpu),
             size: [Disc::SIDE; 2],
@@ -113,7 +111,7 @@ impl Scene {
             is_reversed: false,
             reach_m: 800.0,
         };
-        let shadows = SunShadows::from_map(&gpu.device, &map);
+        let shadows = SunShadows::from_map(&gpu.device, &map).unwrap();
         let walls = Geometry {
             colour: [0.2, 0.5, 0.9],
             distance_m: &|x, y| match (x + y) % 3 {

@@ -69,7 +69,7 @@ fn draw(
     exposure: f32,
     geometry: Option<&Geometry<'_>>,
 ) -> Vec<[f32; 3]> {
-    let camera = frame.camera(exposure);
+    let camera = frame.camera(exposure).unwrap();
     let pixels = gpu.draw(frame, geometry, |encoder, target, depth| {
         renderer.record(encoder, target, depth, &camera);
     });
@@ -520,7 +520,12 @@ fn an_environment_map_holds_what_surfaces_reflect() {
     let mut map = renderer.environment_map(128).unwrap();
     assert_eq!(map.levels(), 5);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    renderer.record_environment(&mut encoder, &mut map, exposure);
+    let recorded = renderer.record_environment(&mut encoder, &mut map, exposure);
+    assert_eq!(recorded, Ok(()));
+    for wrong in [f32::NAN, f32::INFINITY, -1.0] {
+        let refused = renderer.record_environment(&mut encoder, &mut map, wrong);
+        assert!(matches!(refused, Err(SkyRendererError::OutOfRange { .. })));
+    }
     gpu.queue.submit([encoder.finish()]);
     let mean = right(Vec3::Y).y;
     let limits = [0.005, 0.015, 0.02, 0.03, 0.045];

@@ -290,7 +290,7 @@ impl Scene {
         };
         let air = AIR.atmosphere();
         let renderer = SkyRenderer::new(&gpu.device, &gpu.queue, &air, &settings).unwrap();
-        let mut terrain = TerrainPass::new(&gpu.device, &gpu.queue, FORMAT);
+        let mut terrain = TerrainPass::new(&gpu.device, &gpu.queue, FORMAT).unwrap();
         terrain.set_heights(&ridge());
         Self {
             renderer,
@@ -312,15 +312,11 @@ impl Scene {
     /// What shadows take from each pixel without geometry, and its light without shadows: those of the ground, or of a disc.
     fn lost(&mut self, sun: DVec3, disc: Option<&Disc>) -> Vec<[Vec3; 2]> {
         self.renderer.update(EYE_M.y, sun).unwrap();
-        let view = TerrainView {
-            eye_m: EYE_M,
-            planet_radius_m: AIR.atmosphere().planet.radius_m,
-            lighting: *self.renderer.lighting().unwrap(),
-            level_albedo: [0.1; 3],
-            steep_albedo: [0.1; 3],
-        };
+        let radius_m = AIR.atmosphere().planet.radius_m;
+        let lighting = *self.renderer.lighting().unwrap();
+        let view = TerrainView::new(EYE_M, radius_m, lighting, [[0.1; 3]; 2]).unwrap();
         let lit = draw(&self.gpu, &mut self.renderer, &self.frame, EXPOSURE, None);
-        let camera = self.frame.camera(EXPOSURE);
+        let camera = self.frame.camera(EXPOSURE).unwrap();
         let of_disc = disc.map(|disc| {
             let map = ShadowMap {
                 depth: &disc.map(&self.gpu),
@@ -329,7 +325,7 @@ impl Scene {
                 is_reversed: false,
                 reach_m: 800.0,
             };
-            SunShadows::from_map(&self.gpu.device, &map)
+            SunShadows::from_map(&self.gpu.device, &map).unwrap()
         });
         let (renderer, terrain) = (&mut self.renderer, &mut self.terrain);
         let shaded = self.gpu.draw(&self.frame, None, |encoder, target, depth| {
@@ -439,6 +435,6 @@ fn without_shadows_frames_are_the_same() {
     let mut scene = Scene::new();
     let is_none = |lost: Vec<[Vec3; 2]>| lost.iter().all(|[lost, _]| *lost == Vec3::ZERO);
     assert!(is_none(scene.lost(axes::direction(90.0, -2.0), None)));
-    scene.terrain = TerrainPass::new(&scene.gpu.device, &scene.gpu.queue, FORMAT);
+    scene.terrain = TerrainPass::new(&scene.gpu.device, &scene.gpu.queue, FORMAT).unwrap();
     assert!(is_none(scene.lost(sun(), None)));
 }

@@ -143,13 +143,11 @@ fn the_moon_shows_its_phase() {
     let half_width = 0.0175;
     let frame = Frame::towards(moon.direction.as_vec3(), 96);
     let narrow = Mat4::from_scale(Vec3::new(half_width, half_width, 1.0));
-    let camera = Camera {
-        projection: Projection::Perspective {
-            world_from_clip: frame.clip_from_world.inverse() * narrow,
-            far_depth: 0.0,
-        },
-        exposure: 1e-3,
+    let telescope = Projection::Perspective {
+        world_from_clip: frame.clip_from_world.inverse() * narrow,
+        far_depth: 0.0,
     };
+    let camera = Camera::new(telescope, 1e-3).unwrap();
     let pixels = gpu.draw(&frame, None, |encoder, target, depth| {
         renderer.record(encoder, target, depth, &camera);
     });
@@ -173,7 +171,7 @@ fn the_moon_shows_its_phase() {
             luminance(rgb_of(grid, &view.sun_disc_radiance(direction)))
         });
         let right = parts.sum::<f64>() / f64::from(PARTS * PARTS);
-        let got = luminance(pixel.map(|v| f64::from(v / camera.exposure))) - sky;
+        let got = luminance(pixel.map(|v| f64::from(v / camera.exposure()))) - sky;
         worst = worst.max((got - right).abs());
         brightest = brightest.max(right);
         sums = [sums[0] + got, sums[1] + right];
@@ -202,7 +200,9 @@ fn a_second_source_adds_its_light_in_fog_and_reflections() {
         let frame = draw(&gpu, &mut renderer, &frame, 1e-4, None);
         let mut map = renderer.environment_map(32).unwrap();
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        renderer.record_environment(&mut encoder, &mut map, 1e-4);
+        renderer
+            .record_environment(&mut encoder, &mut map, 1e-4)
+            .unwrap();
         gpu.queue.submit([encoder.finish()]);
         let directions: Vec<Vec3> = super::scattered().collect();
         let cube = super::sample_cube(&gpu, map.view(), &directions, 0.0);

@@ -66,7 +66,7 @@ impl Scene {
         let solver = SkySolver::new(&air, &SkySolver::default_settings(), RgbSpace::Srgb)?;
         let ground = mountains()?;
         let eye_m = DVec3::Y * (ground.height_m([0.0; 2]) + ABOVE_GROUND_M);
-        let mut terrain = TerrainPass::new(device, queue, FORMAT);
+        let mut terrain = TerrainPass::new(device, queue, FORMAT)?;
         terrain.set_heights(&ground);
         let passes = |tables: &FrameTables| -> Result<SkyPasses, SkyRendererError> {
             let mut passes = SkyPasses::new(device, queue, FORMAT)?;
@@ -153,19 +153,15 @@ impl Scene {
         );
         let frame = Frame {
             size,
-            camera: self.camera(size),
+            camera: self.camera(size)?,
             target: view(&target),
             depth: view(&depth),
             drawn,
             texture: target,
         };
-        let terrain = TerrainView {
-            eye_m: self.eye_m,
-            planet_radius_m: self.air.planet.radius_m,
-            lighting: self.lighting,
-            level_albedo: [0.05, 0.07, 0.03],
-            steep_albedo: [0.16, 0.15, 0.13],
-        };
+        let albedos = [[0.05, 0.07, 0.03], [0.16, 0.15, 0.13]];
+        let radius_m = self.air.planet.radius_m;
+        let terrain = TerrainView::new(self.eye_m, radius_m, self.lighting, albedos)?;
         let mut encoder = self
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -180,7 +176,7 @@ impl Scene {
         Ok(frame)
     }
 
-    fn camera(&self, [width, height]: [u32; 2]) -> Camera {
+    fn camera(&self, [width, height]: [u32; 2]) -> Result<Camera, SkyRendererError> {
         let (azimuth, elevation) = LOOK_DEG;
         let look = axes::direction(azimuth, elevation).as_vec3();
         let view = airlight::glam::camera::rh::view::look_to_mat4(Vec3::ZERO, look, Vec3::Y);
@@ -191,13 +187,14 @@ impl Scene {
             [0.0, 0.0, 0.0, -1.0],
             [0.0, 0.0, NEAR_M, 0.0],
         ]);
-        Camera {
-            projection: Projection::Perspective {
-                world_from_clip: (projection * view).inverse(),
-                far_depth: 0.0,
-            },
-            exposure: 1.0 / self.lighting.sky_illuminance_lx(Vec3::Y).y,
-        }
+        let perspective = Projection::Perspective {
+            world_from_clip: (projection * view).inverse(),
+            far_depth: 0.0,
+        };
+        Camera::new(
+            perspective,
+            1.0 / self.lighting.sky_illuminance_lx(Vec3::Y).y,
+        )
     }
 
     /// Sets the eye, the sun and the camera of Hillaire 2020.

@@ -85,7 +85,7 @@ impl<'a> Engine<'a> {
             if pixels.iter().all(|pixel| pixel.frame != index) {
                 continue;
             }
-            let camera = frame.camera(exposure);
+            let camera = frame.camera(exposure)?;
             let draw = |geometry: Option<&Geometry<'_>>| {
                 self.device.draw(frame, geometry, |encoder, target, depth| {
                     self.passes.record(encoder, target, depth, &camera);

@@ -66,7 +66,7 @@ impl Pair {
         walls: Option<&Geometry<'_>>,
     ) -> Vec<[f64; 3]> {
         let green = self.sunlight[1];
-        let camera = frame.camera((1.0 / green) as f32);
+        let camera = frame.camera((1.0 / green) as f32).unwrap();
         self.passes.set_view(height_m, sun, &camera).unwrap();
         let pixels = self.device.draw(frame, walls, |encoder, target, depth| {
             self.passes.record_tables(encoder);
@@ -182,7 +182,7 @@ fn what_hillaire_cannot_draw_is_refused() {
     let refused = passes(Preset::Clear).unwrap_err();
     assert!(matches!(refused, HillairePassesError::Air(_)), "{refused}");
     let passes = passes(Preset::Hillaire).unwrap();
-    let camera = Frame::towards(Vec3::X, SIDE).camera(1.0);
+    let camera = Frame::towards(Vec3::X, SIDE).camera(1.0).unwrap();
     let sun = axes::direction(140.0, 30.0);
     for height_m in [-1.0, 100e3, f64::NAN] {
         let refused = passes.set_view(height_m, sun, &camera).unwrap_err();
@@ -193,12 +193,10 @@ fn what_hillaire_cannot_draw_is_refused() {
     }
     let refused = passes.set_view(2.0, DVec3::ZERO, &camera).unwrap_err();
     assert_eq!(refused, HillairePassesError::Sun(DVec3::ZERO));
-    let around = Camera {
-        projection: Projection::Equirectangular {
-            center_azimuth_deg: 0.0,
-        },
-        exposure: 1.0,
+    let around = Projection::Equirectangular {
+        center_azimuth_deg: 0.0,
     };
+    let around = Camera::new(around, 1.0).unwrap();
     let refused = passes.set_view(2.0, sun, &around).unwrap_err();
     assert_eq!(refused, HillairePassesError::Projection);
 }
@@ -229,7 +227,9 @@ fn hillaire_evaluates_what_the_book_states() {
         distance_m: &|_, y| if y < side / 2 { f32::INFINITY } else { 5e3 },
     };
     let sun = axes::direction(140.0, 5.0);
-    passes.set_view(2.0, sun, &frame.camera(1.0)).unwrap();
+    passes
+        .set_view(2.0, sun, &frame.camera(1.0).unwrap())
+        .unwrap();
     let of = |record: &dyn Fn(&mut wgpu::CommandEncoder)| {
         let mut encoder = device.create_command_encoder(&Default::default());
         encoder.clear_buffer(&counts, 0, None);

@@ -65,9 +65,10 @@ impl Viewer {
                 .as_ref()
                 .and_then(|file| self.contents.get(file));
             let heights = terrain::heights(wanted, contents.map(Vec::as_slice));
-            if let Ok(heights) = &heights {
-                self.picture.set_heights(heights);
-            }
+            let heights = heights.and_then(|heights| {
+                let drawn = self.picture.set_heights(&heights);
+                drawn.map(|()| heights).map_err(|error| error.to_string())
+            });
             self.terrain = Some(LoadedTerrain {
                 file: wanted.file.clone(),
                 spacing_m: wanted.spacing_m,

@@ -109,7 +109,7 @@ impl Air {
         let Projection::Perspective {
             world_from_clip,
             far_depth,
-        } = camera.projection
+        } = camera.projection()
         else {
             return Err(HillairePassesError::Projection);
         };
@@ -118,7 +118,7 @@ impl Air {
             .atan2(self.ground_radius_m);
         let cos_radius = self.sun_radius_rad.cos();
         let solid_angle = std::f64::consts::TAU * (1.0 - cos_radius);
-        let sunlight = Vec3::from(self.sunlight.map(|v| v as f32)) * camera.exposure;
+        let sunlight = Vec3::from(self.sunlight.map(|v| v as f32)) * camera.exposure();
         let mut numbers = world_from_clip.to_cols_array().to_vec();
         numbers.extend(sun.as_vec3().extend((height_m / KM) as f32).to_array());
         numbers.extend(sunlight.extend(horizon as f32).to_array());
