@@ -8,7 +8,7 @@ use airlight::atmosphere::{AerosolType, Atmosphere, ConstituentKind};
 use airlight::axes::direction;
 use airlight::sky::{Sky, SkyError, SkySettings, SunCoverage};
 use airlight::spectrum::WavelengthGrid;
-use airlight::{Cancelled, Control, Named};
+use airlight::{Cancelled, Control, Named, SplitMix64};
 use std::ops::Range;
 
 /// Radiances of some of the cases by path tracing: the example `random_airs`.
@@ -45,7 +45,7 @@ pub struct RandomSky {
 impl RandomSky {
     /// The case of a number.
     pub fn new(number: u64) -> Self {
-        let mut draw = Draw::new(number);
+        let mut draw = SplitMix64::scrambled(number);
         let sun_elevation_deg = match draw.chance(0.5) {
             true => draw.between(-6.0, 10.0),
             false => draw.between(10.0, 90.0),
@@ -175,7 +175,7 @@ pub fn checks(settings: &SkySettings, control: Control<'_>) -> Result<Vec<Check>
 }
 
 /// One to three layers of particles in clear air, with an optical depth of 0.02 to 0.5 each at 550 nm, 1 at most.
-fn layers(draw: &mut Draw) -> String {
+fn layers(draw: &mut SplitMix64) -> String {
     let mut text = "base = \"clear\"\n".to_owned();
     let mut left = 1.0;
     for number in 1..=1 + draw.below(3) {
@@ -225,7 +225,7 @@ fn layers(draw: &mut Draw) -> String {
 }
 
 /// A density profile, in the format of atmosphere files.
-fn density(draw: &mut Draw) -> String {
+fn density(draw: &mut SplitMix64) -> String {
     let bottom_m = draw.scale(100.0, 12e3);
     match draw.below(5) {
         0 => format!(
@@ -259,49 +259,5 @@ fn density(draw: &mut Draw) -> String {
                 densities.join(", ")
             )
         }
-    }
-}
-
-/// Random numbers from a seed: SplitMix64 (Steele, Lea & Flood, OOPSLA 2014).
-struct Draw(u64);
-
-impl Draw {
-    /// Seeds are scrambled, so that the numbers of one are not those of the next.
-    fn new(seed: u64) -> Self {
-        Self(Self(seed).bits())
-    }
-
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// Uniform in `[0, 1)`.
-    fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn between(&mut self, from: f64, to: f64) -> f64 {
-        from + (to - from) * self.unit()
-    }
-
-    /// Uniform in the logarithm.
-    fn scale(&mut self, from: f64, to: f64) -> f64 {
-        from * (to / from).powf(self.unit())
-    }
-
-    fn chance(&mut self, probability: f64) -> bool {
-        self.unit() < probability
-    }
-
-    fn below(&mut self, count: usize) -> usize {
-        (self.unit() * count as f64) as usize
-    }
-
-    fn pick<T: Copy>(&mut self, list: &[T]) -> T {
-        list[self.below(list.len())]
     }
 }

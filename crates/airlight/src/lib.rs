@@ -63,6 +63,9 @@ pub mod transfer;
 
 pub use control::{Cancelled, Control, Progress};
 pub use glam;
+/// For tests and random settings of the crates of this workspace.
+#[doc(hidden)]
+pub use math::split_mix::SplitMix64;
 pub use names::{Named, UnknownName};
 
 /// Crates that the code of macros names.

@@ -14,3 +14,4 @@ pub(crate) mod simd;
 pub(crate) mod simpson;
 pub(crate) mod slices;
 pub(crate) mod spline;
+pub(crate) mod split_mix;

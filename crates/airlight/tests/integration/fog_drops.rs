@@ -2,6 +2,7 @@
 //! comparison with Monte Carlo path tracing with the full phase function.
 
 use crate::common::{GREEN_NM as NM, green_fog, green_path};
+use airlight::SplitMix64;
 use airlight::atmosphere::Constituent;
 use airlight::axes::direction;
 use airlight::fog::{DensityProfile, Fog, FogScattering, Ground};
@@ -11,19 +12,6 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 const TOP_M: f64 = 100.0;
-
-/// Uniform random numbers in `[0, 1)`: SplitMix (Steele, Lea & Flood, OOPSLA 2014).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
 
 /// A slab for path tracing; heights are optical depths above the ground.
 struct Slab<'a> {
@@ -38,28 +26,28 @@ impl Slab<'_> {
     }
 
     /// Samples a direction of scattering around `around`.
-    fn scattered(&self, around: DVec3, random: &mut Random) -> DVec3 {
-        let cosine = self.phase.sample(random.next(), NM);
+    fn scattered(&self, around: DVec3, random: &mut SplitMix64) -> DVec3 {
+        let cosine = self.phase.sample(random.unit(), NM);
         let sine = ((1.0 - cosine) * (1.0 + cosine)).max(0.0).sqrt();
         let (across, up) = around.any_orthonormal_pair();
-        let (sin, cos) = (std::f64::consts::TAU * random.next()).sin_cos();
+        let (sin, cos) = (std::f64::consts::TAU * random.unit()).sin_cos();
         (around * cosine + (across * cos + up * sin) * sine).normalize()
     }
 
     /// Samples the height of the next scattering event; `None` if the path leaves the slab.
-    fn next(&self, height: f64, towards: DVec3, random: &mut Random) -> Option<f64> {
-        let next = height - (1.0 - random.next()).ln() * towards.y;
+    fn next(&self, height: f64, towards: DVec3, random: &mut SplitMix64) -> Option<f64> {
+        let next = height - (1.0 - random.unit()).ln() * towards.y;
         (0.0..self.tau).contains(&next).then_some(next)
     }
 
     /// Radiance of light scattered twice or more along one path traced backwards from the eye. The second last direction is
     /// sampled by multiple importance sampling from the peaks of both scattering events (Veach & Guibas 1995, balance
     /// heuristic).
-    fn path(&self, view: DVec3, random: &mut Random) -> f64 {
+    fn path(&self, view: DVec3, random: &mut SplitMix64) -> f64 {
         let start = if view.y > 0.0 { 0.0 } else { self.tau };
         let (mut at, mut towards, mut radiance) = (self.next(start, view, random), view, 0.0);
         while let Some(height) = at {
-            let around = match random.next() < 0.5 {
+            let around = match random.unit() < 0.5 {
                 true => towards,
                 false => self.sun,
             };
@@ -80,7 +68,7 @@ impl Slab<'_> {
 fn scattered_again(slab: &Slab<'_>, view: DVec3, paths: u64) -> (f64, f64) {
     const CHUNK: u64 = 1000;
     let chunk = |chunk: u64| {
-        let mut random = Random(chunk << 32);
+        let mut random = SplitMix64::new(chunk << 32);
         (0..CHUNK).fold((0.0, 0.0), |(sum, squares), _| {
             let radiance = slab.path(view, &mut random);
             (sum + radiance, squares + radiance * radiance)

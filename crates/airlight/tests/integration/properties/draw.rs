@@ -1,54 +1,33 @@
 //! Random valid inputs.
 
+use airlight::SplitMix64;
 use airlight::atmosphere::{DensityProfile, Interpolation};
 use airlight::axes;
 use airlight::fog::{Ground, RgbLayer};
 use airlight::optics::{Depolarization, PhaseFunction};
 use glam::DVec3;
+use std::ops::{Deref, DerefMut};
 
-/// Random numbers from a seed: SplitMix64 (Steele, Lea & Flood, OOPSLA 2014).
-pub struct Draw(u64);
+/// Random numbers, and inputs from them.
+pub struct Draw(SplitMix64);
+
+impl Deref for Draw {
+    type Target = SplitMix64;
+
+    fn deref(&self) -> &SplitMix64 {
+        &self.0
+    }
+}
+
+impl DerefMut for Draw {
+    fn deref_mut(&mut self) -> &mut SplitMix64 {
+        &mut self.0
+    }
+}
 
 impl Draw {
-    /// Seeds are scrambled, so that the numbers of one are not those of the next.
     pub fn new(seed: u64) -> Self {
-        Self(Self(seed).bits())
-    }
-
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// Uniform in `[0, 1)`.
-    pub fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// Uniform between two numbers.
-    pub fn between(&mut self, from: f64, to: f64) -> f64 {
-        from + (to - from) * self.unit()
-    }
-
-    /// Uniform in the logarithm.
-    pub fn scale(&mut self, from: f64, to: f64) -> f64 {
-        from * (to / from).powf(self.unit())
-    }
-
-    /// True with this probability.
-    pub fn chance(&mut self, probability: f64) -> bool {
-        self.unit() < probability
-    }
-
-    pub fn below(&mut self, count: usize) -> usize {
-        (self.unit() * count as f64) as usize
-    }
-
-    pub fn pick<T: Clone>(&mut self, list: &[T]) -> T {
-        list[self.below(list.len())].clone()
+        Self(SplitMix64::scrambled(seed))
     }
 
     /// A direction: level, vertical, close to level, or anywhere.
