@@ -11,7 +11,7 @@ mod planets;
 mod shadows;
 mod two_sources;
 
-use airlight::atmosphere::{DensityProfile, Preset};
+use airlight::atmosphere::{AerosolMixture, AerosolType, DensityProfile, Preset};
 use airlight::axes;
 use airlight::fog::lights::{
     Light, LightSettings, PointLight, RgbLightSet, SphereLight, SpotLight, ViewRay,
@@ -166,6 +166,28 @@ fn moved_suns_evaluate_the_medium_in_few_places_and_turned_cameras_in_none() {
             assert!((1000..6000).contains(&thicker), "{thicker}");
             assert!((1000..60_000).contains(&shadows), "{shadows}");
         }
+    });
+}
+
+/// In dust with a sharp upper edge more rays have places of their own: more than the 0.15 million that clear and hazy air stay below.
+#[test]
+fn moved_suns_evaluate_the_medium_in_more_places_in_dust() {
+    let (sun_deg, height_m) = (-2.0, 3e3);
+    let mut air = Preset::Average.atmosphere();
+    let (ground_m, top_m) = (air.planet.ground_altitude_m, air.planet.top_altitude_m);
+    let dust = AerosolMixture::of(AerosolType::Desert, AerosolMixture::USUAL_HUMIDITY).unwrap();
+    let dust = dust.constituent(None, None, air.clear_air(), ground_m, top_m);
+    air.put(dust.unwrap());
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    pool.unwrap().install(|| {
+        let settings = settings(sun_deg, height_m);
+        let solver = SkySolver::new(&air, &settings, RgbSpace::Srgb).unwrap();
+        let before = medium_evaluations();
+        let sun = axes::direction(140.0, sun_deg);
+        solver.tables(height_m, sun, None).unwrap();
+        let moved = medium_evaluations() - before;
+        println!("{moved} evaluations");
+        assert!((150_000..200_000).contains(&moved), "{moved}");
     });
 }
 
