@@ -84,8 +84,8 @@ impl HillairePasses {
         Self::with_counts(device, queue, atmosphere, target_format, None)
     }
 
-    /// As [`Self::new`], with passes that add what they evaluate to the [`Counts`] of a storage buffer: the function whose calls they count
-    /// evaluates the densities of the air. They draw the same, slower.
+    /// As [`Self::new`], with passes that add what they evaluate to the [`Counts`](airlight_shaders::Counts) of a storage buffer: the function
+    /// whose calls they count evaluates the densities of the air. They draw the same, slower.
     ///
     /// # Errors
     /// As [`Self::new`].
