@@ -98,7 +98,7 @@ impl SkySolver {
         let mut settings = SkySettings::default();
         let orders = &mut settings.orders;
         (orders.degree, orders.peak_degree, orders.rescattered_degree) = (12, 12, 8);
-        orders.later.zenith_nodes = [6, 6, 8];
+        orders.later.zenith_nodes = [6, 8, 6];
         (orders.first.azimuths, orders.later.azimuths) = (12, 9);
         settings
     }

@@ -89,7 +89,7 @@ fn at_the_horizon(control: Control<'_>) -> Result<Vec<Check>, Cancelled> {
         let [sun, altitude_m] = ["sun", "altitude_m"].map(|name| group.number(name));
         (
             format!("at the horizon from {altitude_m} m, sun at {sun} degrees, {of}"),
-            2.0,
+            1.5,
         )
     })
 }

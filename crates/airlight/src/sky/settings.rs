@@ -75,8 +75,8 @@ pub struct Directions {
 }
 
 impl Default for SkySettings {
-    /// All orders, for all sun elevations, with the accuracy stated in the book: within 1 % of Monte Carlo for the sun above
-    /// 10 degrees, 2 % near the horizon.
+    /// All orders, for all sun elevations, with the accuracy stated in the book: in clear and hazy air within 1 % of Monte Carlo for suns
+    /// at 10 degrees and higher, 2 % near the horizon; in desert dust 2 and 4 %.
     fn default() -> Self {
         Self {
             suns: SunCoverage::All,
