@@ -515,6 +515,7 @@ mod tests {
             assert!(book.contains(&row), "{row}");
         }
     }
+
     /// Pixels on a side of a frame, whose lower half are walls.
     const SIDE: u32 = 1024;
 

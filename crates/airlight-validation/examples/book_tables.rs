@@ -186,10 +186,11 @@ fn settings() {
     type Change = fn(&mut SkySettings);
     let changes: [(&str, Change); 10] = [
         ("default", |_| ()),
-        ("altitudes 12", |s| s.altitudes = 12),
+        ("altitudes 8", |s| s.altitudes = 8),
         ("altitudes 40", |s| s.altitudes = 40),
-        ("degree 5, peak degree 6", |s| {
-            (s.orders.degree, s.orders.peak_degree) = (5, 6)
+        ("degree 5, peak degree 6, all of it rescattered", |s| {
+            let orders = &mut s.orders;
+            (orders.degree, orders.peak_degree, orders.rescattered_degree) = (5, 6, 5)
         }),
         ("degree 12, peak degree 14", |s| {
             (s.orders.degree, s.orders.peak_degree) = (12, 14)
