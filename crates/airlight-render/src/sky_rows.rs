@@ -8,6 +8,7 @@ use airlight::scene::{RadianceView, RowSampler, StarField};
 use airlight_image::frame::FrameRows;
 use airlight_image::{Frame, Projection, RowSource};
 use glam::DVec3;
+use std::cell::OnceCell;
 
 /// Part of the light that is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,6 +59,24 @@ pub struct SkyRows<'a> {
     pixel_reach: f64,
 }
 
+/// A row of pixels with its directions, which are computed where they are needed.
+struct Row<'a> {
+    rows: &'a FrameRows,
+    y: u32,
+    directions: OnceCell<Vec<DVec3>>,
+}
+
+impl Row<'_> {
+    fn directions(&self) -> &[DVec3] {
+        self.directions.get_or_init(|| {
+            let width = self.rows.frame().size().width() as usize;
+            let mut directions = vec![DVec3::ZERO; width];
+            self.rows.fill(self.y, &mut directions);
+            directions
+        })
+    }
+}
+
 impl<'a> SkyRows<'a> {
     /// Rows of a layer of `frame`; values are radiance or luminance multiplied by `scale`.
     pub fn new(
@@ -87,16 +106,18 @@ impl<'a> SkyRows<'a> {
         }
     }
 
-    /// Adds the radiance of a row to its pixels, which are 0.
-    fn add_view(&self, view: &dyn RadianceView, y: u32, directions: &[DVec3], out: &mut [f32]) {
+    /// Sets the pixels of a row to the radiance of a view.
+    fn draw_view(&self, view: &dyn RadianceView, row: &Row<'_>, out: &mut [f32]) {
         if self.channels.are_those_of_views() {
-            self.sample_row(view, y, directions, out);
+            self.sample_row(view, row, out);
             if self.scale != 1.0 {
                 out.iter_mut().for_each(|value| *value *= self.scale);
             }
         } else {
-            let mut values = vec![0.0; directions.len() * self.channels.view_count()];
-            self.sample_row(view, y, directions, &mut values);
+            out.fill(0.0);
+            let width = self.rows.frame().size().width() as usize;
+            let mut values = vec![0.0; width * self.channels.view_count()];
+            self.sample_row(view, row, &mut values);
             self.add(&values, out);
         }
     }
@@ -111,29 +132,27 @@ impl<'a> SkyRows<'a> {
     }
 
     /// Radiance of a row in the channels of the view.
-    fn sample_row(
-        &self,
-        view: &dyn RadianceView,
-        y: u32,
-        directions: &[DVec3],
-        values: &mut [f32],
-    ) {
-        let at_horizon = |direction: DVec3| {
-            let height = direction.y.clamp(-1.0, 1.0).asin() - view.horizon_elevation_rad();
+    fn sample_row(&self, view: &dyn RadianceView, row: &Row<'_>, values: &mut [f32]) {
+        let at_horizon = |elevation_rad: f64| {
+            let height = elevation_rad - view.horizon_elevation_rad();
             view.averages_horizon() && height.abs() < self.pixel_reach
         };
-        match (&self.sampler, directions.first()) {
-            (Some(sampler), Some(&first)) if !at_horizon(first) => {
-                sampler.sample_row(directions, values);
+        match (&self.sampler, self.rows.frame().row_elevation_rad(row.y)) {
+            (Some(sampler), Some(elevation_rad)) if !at_horizon(elevation_rad) => {
+                sampler.sample_row(elevation_rad, values);
             }
             _ => {
+                let directions = row.directions();
                 view.radiance(directions, values);
                 let crossed: Vec<u32> = (0..)
                     .zip(directions)
-                    .filter(|(_, direction)| **direction != DVec3::ZERO && at_horizon(**direction))
+                    .filter(|(_, direction)| {
+                        **direction != DVec3::ZERO
+                            && at_horizon(direction.y.clamp(-1.0, 1.0).asin())
+                    })
                     .map(|(i, _)| i)
                     .collect();
-                self.average_pixels(view, (&crossed, y), values);
+                self.average_pixels(view, (&crossed, row.y), values);
             }
         }
     }
@@ -178,25 +197,30 @@ impl RowSource for SkyRows<'_> {
     }
 
     fn fill_row(&self, y: u32, out: &mut [f32]) {
+        let row = Row {
+            rows: &self.rows,
+            y,
+            directions: OnceCell::new(),
+        };
         let frame = self.rows.frame();
-        let width = frame.size().width() as usize;
-        let mut directions = vec![DVec3::ZERO; width];
-        self.rows.fill(y, &mut directions);
-        out.fill(0.0);
         match self.sky {
-            None => {}
+            None => out.fill(0.0),
             Some(SkyValues::Stored { values, first_row }) => {
-                let row = width * self.channels.view_count();
+                out.fill(0.0);
+                let row = frame.size().width() as usize * self.channels.view_count();
                 self.add(&values[(y - first_row) as usize * row..][..row], out);
             }
-            Some(SkyValues::View(view)) => self.add_view(view, y, &directions, out),
+            Some(SkyValues::View(view)) => self.draw_view(view, &row, out),
         }
         if let Some(stars) = &self.stars {
             stars.add_row(y, self.scale, self.channels, out);
         }
         for disc in self.discs {
-            let reach_and_scale = (self.pixel_reach, self.scale);
-            disc.add_row((frame, y), &directions, reach_and_scale, self.channels, out);
+            if disc.reaches_row(frame, y, self.pixel_reach) {
+                let reach_and_scale = (self.pixel_reach, self.scale);
+                let directions = row.directions();
+                disc.add_row((frame, y), directions, reach_and_scale, self.channels, out);
+            }
         }
     }
 }

@@ -62,6 +62,14 @@ impl SunDiscImage {
         })
     }
 
+    /// Whether the disc may be seen in a row of pixels whose corners lie within `pixel_reach` (rad) of their centres.
+    pub fn reaches_row(&self, frame: &Frame, y: u32, pixel_reach: f64) -> bool {
+        let sun_rad = axes::elevation_rad(self.sun);
+        frame.row_elevation_rad(y).is_none_or(|elevation_rad| {
+            (elevation_rad - sun_rad).abs() <= self.radius_rad + pixel_reach
+        })
+    }
+
     /// Adds the disc to a row of pixels with these directions; values are radiance multiplied by `scale`. Corners of a pixel must
     /// lie within `pixel_reach` (rad) of its centre.
     pub fn add_row(
@@ -74,11 +82,6 @@ impl SunDiscImage {
     ) {
         let reach = self.radius_rad + pixel_reach;
         let nearest = if reach < 3.0 { reach.cos() } else { -2.0 };
-        if frame.row_elevation_rad(y).is_some_and(|elevation_rad| {
-            (elevation_rad - axes::elevation_rad(self.sun)).abs() > reach
-        }) {
-            return;
-        }
         for ((i, direction), pixel) in (0..)
             .zip(directions)
             .zip(out.chunks_exact_mut(channels.count()))

@@ -5,8 +5,17 @@ use glam::DVec3;
 /// Unit vector in world axes (x east, y up, z south) of the direction at `azimuth_deg`, clockwise from north, and
 /// `elevation_deg`, above the horizon.
 pub fn direction(azimuth_deg: f64, elevation_deg: f64) -> DVec3 {
-    let (sin_azimuth, cos_azimuth) = azimuth_deg.to_radians().sin_cos();
-    let (sin_elevation, cos_elevation) = elevation_deg.to_radians().sin_cos();
+    from_sines(
+        azimuth_deg.to_radians().sin_cos(),
+        elevation_deg.to_radians().sin_cos(),
+    )
+}
+
+/// The unit vector of [`direction`] from sine and cosine of the azimuth and of the elevation.
+pub fn from_sines(
+    (sin_azimuth, cos_azimuth): (f64, f64),
+    (sin_elevation, cos_elevation): (f64, f64),
+) -> DVec3 {
     DVec3::new(
         cos_elevation * sin_azimuth,
         sin_elevation,

@@ -37,15 +37,6 @@ pub(super) enum Lens {
     },
 }
 
-/// Direction from the sines and cosines of azimuth and elevation.
-pub(super) fn from_sines(azimuth: (f64, f64), elevation: (f64, f64)) -> DVec3 {
-    DVec3::new(
-        elevation.1 * azimuth.0,
-        elevation.0,
-        -elevation.1 * azimuth.1,
-    )
-}
-
 impl Lens {
     pub(super) fn new(projection: &Projection, size: Size) -> Self {
         let (width, height) = (f64::from(size.width()), f64::from(size.height()));
@@ -90,7 +81,7 @@ impl Lens {
 
     pub(super) fn direction(&self, px: f64, py: f64) -> Option<DVec3> {
         match self {
-            Self::Equirectangular { .. } => Some(from_sines(
+            Self::Equirectangular { .. } => Some(world::from_sines(
                 self.azimuth(px).sin_cos(),
                 self.elevation(py).sin_cos(),
             )),

@@ -161,7 +161,7 @@ impl FrameRows {
         } else {
             let (sin, cos) = self.frame.lens.elevation(py).sin_cos();
             for (direction, &azimuth) in out.iter_mut().zip(&self.columns) {
-                *direction = lens::from_sines(azimuth, (sin, cos));
+                *direction = airlight::axes::from_sines(azimuth, (sin, cos));
             }
         }
     }

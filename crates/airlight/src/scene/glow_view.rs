@@ -400,9 +400,9 @@ impl GlowView {
     }
 
     /// [`Self::add_radiance`] for many directions, of which a zero vector is none.
-    pub fn add_to(&self, directions: &[DVec3], out: &mut [f32]) {
+    pub fn add_to(&self, directions: impl Iterator<Item = DVec3>, out: &mut [f32]) {
         let values = out.chunks_exact_mut(self.count);
-        for (&direction, values) in directions.iter().zip(values) {
+        for (direction, values) in directions.zip(values) {
             if direction != DVec3::ZERO {
                 self.add_radiance(direction, values);
             }

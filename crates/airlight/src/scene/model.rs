@@ -11,6 +11,7 @@
 //! each direction. All three traits are `Send + Sync + 'static`, so that implementations can be stored in an [`Arc`].
 
 use super::{Capabilities, Channels, FogLayers, ResolvedScene, SceneError};
+use crate::axes;
 use crate::control::{Cancelled, Control};
 use crate::monte_carlo::{Estimate, PolarisedEstimate};
 use crate::night::NightState;
@@ -287,8 +288,33 @@ pub trait RadianceView: Debug + Send + Sync + 'static {
 
 /// Radiance by rows for pictures with constant azimuth in each column and constant elevation in each row.
 pub trait RowSampler: Debug + Send + Sync {
-    /// Radiance in the directions of a row, which have one elevation and the azimuths for which the sampler was created.
-    fn sample_row(&self, directions: &[DVec3], out: &mut [f32]);
+    /// Radiance at an elevation (rad) and the azimuths for which the sampler was created.
+    fn sample_row(&self, elevation_rad: f64, out: &mut [f32]);
+}
+
+/// Directions of rows with constant azimuth in each column, for samplers of what varies in any direction.
+#[derive(Debug)]
+pub(super) struct RowDirections {
+    /// Sine and cosine of the azimuth of each column.
+    azimuths: Vec<(f64, f64)>,
+}
+
+impl RowDirections {
+    pub(super) fn new(azimuths_rad: &[f64]) -> Self {
+        Self {
+            azimuths: azimuths_rad
+                .iter()
+                .map(|azimuth| azimuth.sin_cos())
+                .collect(),
+        }
+    }
+
+    /// The directions of a row at an elevation (rad).
+    pub(super) fn at(&self, elevation_rad: f64) -> impl Iterator<Item = DVec3> {
+        let elevation = elevation_rad.sin_cos();
+        let azimuths = self.azimuths.iter();
+        azimuths.map(move |&azimuth| axes::from_sines(azimuth, elevation))
+    }
 }
 
 /// Independent unbiased samples of radiance, from which a Monte Carlo picture is accumulated in passes.

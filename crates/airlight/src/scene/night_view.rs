@@ -1,7 +1,7 @@
 //! [`NightView`]: sunlight, moonlight and the glow of the night sky together.
 
 use super::glow_view::GlowView;
-use super::model::StarField;
+use super::model::{RowDirections, StarField};
 use super::{Channels, RadianceView, RowSampler, SolvedView};
 use crate::math::slices::accumulate;
 use crate::spectrum::WavelengthGrid;
@@ -80,7 +80,7 @@ impl RadianceView for NightView {
     fn radiance(&self, directions: &[DVec3], out: &mut [f32]) {
         self.sunlit.radiance(directions, out);
         self.add_moonlit(out, |moonlit, values| moonlit.radiance(directions, values));
-        self.glow.add_to(directions, out);
+        self.glow.add_to(directions.iter().copied(), out);
     }
 
     fn row_sampler(&self, azimuths_rad: &[f64]) -> Option<Box<dyn RowSampler>> {
@@ -93,6 +93,7 @@ impl RadianceView for NightView {
             sunlit,
             moonlit,
             glow: self.glow.clone(),
+            directions: RowDirections::new(azimuths_rad),
         }))
     }
 
@@ -174,16 +175,17 @@ struct NightRows {
     sunlit: Box<dyn RowSampler>,
     moonlit: Option<Box<dyn RowSampler>>,
     glow: Arc<GlowView>,
+    directions: RowDirections,
 }
 
 impl RowSampler for NightRows {
-    fn sample_row(&self, directions: &[DVec3], out: &mut [f32]) {
-        self.sunlit.sample_row(directions, out);
+    fn sample_row(&self, elevation_rad: f64, out: &mut [f32]) {
+        self.sunlit.sample_row(elevation_rad, out);
         if let Some(moonlit) = &self.moonlit {
             let mut values = vec![0.0; out.len()];
-            moonlit.sample_row(directions, &mut values);
+            moonlit.sample_row(elevation_rad, &mut values);
             accumulate(&values, out);
         }
-        self.glow.add_to(directions, out);
+        self.glow.add_to(self.directions.at(elevation_rad), out);
     }
 }

@@ -3,6 +3,7 @@
 use super::fog_in_sky::FogInSky;
 use super::irradiance_map::horizontal_irradiance_around;
 use super::light::LitSky;
+use super::model::RowDirections;
 use super::sun_disc_table::SunDiscTable;
 use super::{Channels, FogLayers, IrradianceMap, RadianceView, RowSampler, SceneError};
 use crate::axes;
@@ -241,10 +242,11 @@ impl RadianceView for SolvedView {
         let clear = self.clear.clone()?;
         let sun_rad = axes::azimuth_deg(self.sun()).to_radians();
         let columns = clear.columns(azimuths_rad.iter().map(|rad| rad - sun_rad));
+        let fog = self.fog.as_ref();
         Some(Box::new(SolvedRows {
             clear,
             columns,
-            fog: self.fog.clone(),
+            fog: fog.map(|fog| (fog.clone(), RowDirections::new(azimuths_rad))),
         }))
     }
 
@@ -348,19 +350,15 @@ impl fmt::Debug for SolvedView {
 struct SolvedRows {
     clear: Arc<SkyTable>,
     columns: SkyColumns,
-    fog: Option<Arc<FogInSky>>,
+    fog: Option<(Arc<FogInSky>, RowDirections)>,
 }
 
 impl RowSampler for SolvedRows {
-    fn sample_row(&self, directions: &[DVec3], out: &mut [f32]) {
-        let Some(first) = directions.first() else {
-            return;
-        };
-        self.clear
-            .sample_row(axes::elevation_rad(*first), &self.columns, out);
-        if let Some(fog) = &self.fog {
+    fn sample_row(&self, elevation_rad: f64, out: &mut [f32]) {
+        self.clear.sample_row(elevation_rad, &self.columns, out);
+        if let Some((fog, directions)) = &self.fog {
             let values = out.chunks_exact_mut(self.clear.channels());
-            for (&direction, values) in directions.iter().zip(values) {
+            for (direction, values) in directions.at(elevation_rad).zip(values) {
                 fog.cover(direction, values);
             }
         }

@@ -176,7 +176,7 @@ fn light_of_sun_moon_and_stars_adds_up() {
     whole
         .row_sampler(&azimuths)
         .unwrap()
-        .sample_row(&row, &mut rows);
+        .sample_row(33.0_f64.to_radians(), &mut rows);
     let mut singly = vec![0.0; 3 * 8];
     whole.radiance(&row, &mut singly);
     for (a, b) in rows.iter().zip(&singly) {
