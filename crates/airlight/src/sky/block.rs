@@ -181,15 +181,23 @@ impl<const N: usize> Solved<N> {
         );
         let mut diffuse = None;
         if settings.scattering == Scattering::All && !air.scatterers.is_empty() {
-            let zeniths = settings
-                .suns
-                .sun_zeniths_deg(air.shell().ground_radius_m, air.shell().top_radius_m);
+            let bounds = (air.shell().ground_radius_m, air.shell().top_radius_m);
+            let zeniths = settings.suns.sun_zeniths_deg(bounds.0, bounds.1);
             let grid = FieldGrid::new(&air, settings.altitudes, &zeniths);
+            let eye_zenith = settings.suns.eye_zenith_deg(bounds.0, bounds.1);
+            let eye_sun = eye_zenith.map(|zenith| grid.nearest_sun(zenith.to_radians().cos()));
             let report = |fraction| share.report(fraction);
             let polarised =
                 settings.polarisation_correction && air.scatterers.iter().any(Scatterer::polarises);
             let orders = &settings.orders;
-            let solved = orders::solve(&air, grid, orders, polarised, share.control, report)?;
+            let solved = orders::solve(
+                &air,
+                (grid, eye_sun),
+                orders,
+                polarised,
+                share.control,
+                report,
+            )?;
             diffuse = Some(solved);
         }
         share.report(1.0);

@@ -79,12 +79,28 @@ impl SunCoverage {
         }
     }
 
-    /// Zenith angles of the sun at which the light inside the atmosphere is solved for, degrees, increasing.
-    pub(super) fn sun_zeniths_deg(self, ground_radius_m: f64, top_radius_m: f64) -> Vec<f64> {
+    /// Zenith angle of the sun at the eye, degrees, where views reach no suns far from it.
+    pub(super) fn eye_zenith_deg(self, ground_radius_m: f64, top_radius_m: f64) -> Option<f64> {
         let Self::Near {
             sun_elevation_deg,
             observer_altitude_m,
         } = self
+        else {
+            return None;
+        };
+        let range = range_deg(observer_altitude_m, ground_radius_m, top_radius_m);
+        (range <= WIDE_DEG).then(|| (90.0 - sun_elevation_deg).clamp(0.0, NIGHT_DEG))
+    }
+
+    /// Zenith angles of the sun at which the light inside the atmosphere is solved for, degrees, increasing.
+    pub(super) fn sun_zeniths_deg(self, ground_radius_m: f64, top_radius_m: f64) -> Vec<f64> {
+        let (
+            Self::Near {
+                observer_altitude_m,
+                ..
+            },
+            Some(centre),
+        ) = (self, self.eye_zenith_deg(ground_radius_m, top_radius_m))
         else {
             return match self {
                 Self::AboveHorizon => zeniths_above_horizon_deg(),
@@ -92,10 +108,6 @@ impl SunCoverage {
             };
         };
         let range = range_deg(observer_altitude_m, ground_radius_m, top_radius_m);
-        if range > WIDE_DEG {
-            return all_zeniths_deg();
-        }
-        let centre = (90.0 - sun_elevation_deg).clamp(0.0, NIGHT_DEG);
         let lowest = (centre - range - MARGIN_DEG).max(0.0);
         let highest = (centre + range + MARGIN_DEG).min(NIGHT_DEG);
         let mut zeniths = vec![centre];

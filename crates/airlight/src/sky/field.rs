@@ -97,6 +97,12 @@ impl FieldGrid {
         self.intervals[interval_of(&self.radii_m, radius_m)].at(x)
     }
 
+    /// Index of the sun nearest to a cosine.
+    pub fn nearest_sun(&self, mu_sun: f64) -> usize {
+        let place = self.place_of_sun(mu_sun);
+        place.below + usize::from(place.fraction > 0.5)
+    }
+
     /// Interpolation interval of a sun cosine.
     #[inline(always)]
     pub fn place_of_sun(&self, mu_sun: f64) -> Place {

@@ -24,6 +24,7 @@ use crate::math::simd::vectorized;
 use crate::spectrum::Spectrum;
 use crate::transfer::delta_m::peak_fraction;
 use std::f32::consts::PI;
+use std::ops::Range;
 
 /// Number of azimuthal modes.
 pub const MODES: usize = 5;
@@ -129,6 +130,19 @@ fn node_cosines(horizon: f64) -> Vec<f64> {
 
 /// For each radius, the light along each path by azimuthal mode, `[sun][path][mode]`.
 pub type ByDirection<const N: usize> = Vec<Vec<Spectrum<N>>>;
+
+/// Replaces the light under some of a number of suns.
+pub fn replace<const N: usize>(
+    light: &mut ByDirection<N>,
+    other: &ByDirection<N>,
+    (replaced, suns): (&Range<usize>, usize),
+) {
+    for (row, other) in light.iter_mut().zip(other) {
+        let stride = row.len() / suns;
+        let part = replaced.start * stride..replaced.end * stride;
+        row[part.clone()].copy_from_slice(&other[part]);
+    }
+}
 
 /// Light by direction, and the directions.
 pub type Directed<'a, const N: usize> = (&'a ByDirection<N>, &'a Directions);

@@ -3,6 +3,7 @@
 use super::field::{FieldGrid, RadianceField};
 use super::harmonics::Harmonics;
 use crate::spectrum::Spectrum;
+use std::ops::Range;
 
 /// Moments of the radiance and of its polarisation `[radius][sun][moment]`, and irradiances on the ground `[sun]`, per unit solar
 /// irradiance.
@@ -69,23 +70,46 @@ impl<const N: usize> Light<N> {
             .collect()
     }
 
-    /// Largest fraction of the intensity that a correction changes at any point that counts ([`Light::least`]): under the first suns,
-    /// as many as `set`, and under the others.
-    pub fn change_by(&self, correction: &Self, set: usize) -> [f32; 2] {
+    /// Under each sun the largest fraction of the intensity that a correction changes at any point that counts ([`Light::least`]); of that
+    /// under `eye_sun` at the same radius where it is larger.
+    pub fn changes_by(&self, correction: &Self, eye_sun: Option<usize>) -> Vec<f32> {
         let (count, suns, least) = (self.count, self.ground.len(), self.least());
-        let mut changes = [0.0f32; 2];
+        let mut changes = vec![0.0f32; suns];
         let points = self.moments.chunks_exact(count);
         let corrections = correction.moments.chunks_exact(count);
         for (place, (point, correction)) in points.zip(corrections).enumerate() {
+            let (radius, sun) = (place / suns, place % suns);
             let scale = admissible(point[0], correction[0]);
             let corrected = point[0].mul_acc(correction[0], scale);
-            let value = brighter(corrected, least[place % suns]);
-            let change = &mut changes[usize::from(place % suns >= set)];
-            *change = (0..N).fold(*change, |change, lane| {
-                change.max((correction[0][lane] * scale[lane] / value[lane]).abs())
+            let mut value = brighter(corrected, least[sun]);
+            if let Some(eye_sun) = eye_sun {
+                value = brighter(value, self.moments[(radius * suns + eye_sun) * count]);
+            }
+            changes[sun] = (0..N).fold(changes[sun], |change, lane| {
+                let fraction = (correction[0][lane] * scale[lane] / value[lane]).abs();
+                change.max(if fraction.is_nan() {
+                    f32::INFINITY
+                } else {
+                    fraction
+                })
             });
         }
         changes
+    }
+
+    /// Removes the light under other suns.
+    pub fn keep(&mut self, kept: &Range<usize>) {
+        let suns = self.ground.len();
+        for (place, point) in self.moments.chunks_exact_mut(self.count).enumerate() {
+            if !kept.contains(&(place % suns)) {
+                point.fill(Spectrum::ZERO);
+            }
+        }
+        for (sun, ground) in self.ground.iter_mut().enumerate() {
+            if !kept.contains(&sun) {
+                *ground = Spectrum::ZERO;
+            }
+        }
     }
 
     /// Adds a correction, limited where it would leave no light or more moments than light has.

@@ -11,6 +11,7 @@ use super::ray_bundle::Response;
 use crate::math::parallel;
 use crate::math::simd::vectorized;
 use crate::spectrum::Spectrum;
+use std::ops::Range;
 
 /// Moments of the light at a number of radii.
 #[derive(Clone, Copy, Debug)]
@@ -187,11 +188,12 @@ impl<const N: usize> PlaneParallel<N> {
         Self { modes }
     }
 
-    /// Sums all orders of scattering of `light` in plane-parallel air, the light itself included.
-    pub fn all_orders(&self, light: &Light<N>) -> Light<N> {
+    /// Sums all orders of scattering of `light` in plane-parallel air, the light itself included, under some of the suns.
+    pub fn all_orders(&self, light: &Light<N>, of_suns: &Range<usize>) -> Light<N> {
         let (suns, count) = (light.ground.len(), light.count);
         let radii = light.moments.len() / (suns * count);
-        let solved = parallel::map(suns, |sun| {
+        let solved = parallel::map(of_suns.len(), |place| {
+            let sun = of_suns.start + place;
             vectorized(
                 #[inline(always)]
                 || {
@@ -208,7 +210,7 @@ impl<const N: usize> PlaneParallel<N> {
             )
         });
         let mut out = light.clone();
-        for (sun, (column, ground)) in solved.iter().enumerate() {
+        for (sun, (column, ground)) in of_suns.clone().zip(&solved) {
             for r in 0..radii {
                 out.moments[(r * suns + sun) * count..][..count]
                     .copy_from_slice(&column[r * count..][..count]);

@@ -55,7 +55,8 @@ pub struct OrderSettings {
     /// Directions for all later orders, which are smoother.
     pub later: Directions,
     /// Relative error of the intensity below which the iteration ends, at any point of the grid under a sun above the horizon; under
-    /// others eight times as much.
+    /// others eight times as much. With [`SunCoverage::Near`] it is relative to the intensity at the same height under the eye's sun where
+    /// that is larger.
     pub tolerance: f32,
     /// Number of iterations after which the solver gives up.
     pub max_iterations: usize,
@@ -124,6 +125,7 @@ impl SkySettings {
                     azimuths: 9,
                     panel_nodes: 3,
                 },
+                tolerance: 5e-4,
                 ..Self::default().orders
             },
             ..Self::default()

@@ -98,7 +98,8 @@ impl Sky {
 
     /// Estimated relative error of the iteration for light scattered more than once: the largest over heights, suns and
     /// wavelengths, below [`OrderSettings::tolerance`](super::OrderSettings::tolerance); 0 for a given number of orders. Errors
-    /// under suns below the horizon count an eighth. Errors of the resolution come on top.
+    /// under suns below the horizon count an eighth, and with [`SunCoverage::Near`] those of light weaker than under the eye's sun less.
+    /// Errors of the resolution come on top.
     pub fn iteration_error(&self) -> f32 {
         let blocks = self.0.blocks.iter();
         blocks

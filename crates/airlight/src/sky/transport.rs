@@ -20,6 +20,7 @@ use crate::math::simd::vectorized;
 use crate::spectrum::Spectrum;
 use crate::transfer::march::Marcher;
 use std::f64::consts::PI;
+use std::ops::Range;
 
 /// Rays from the nodes of a grid in a set of directions.
 pub struct Transport<'a, const N: usize> {
@@ -102,6 +103,7 @@ impl<'a, const N: usize> Transport<'a, N> {
     pub fn sunlight(&self) -> Result<(Light<N>, ByDirection<N>), Cancelled> {
         let air = self.air;
         self.gather(
+            &(0..self.grid.sun_cosines.len()),
             #[inline(always)]
             |path, bundle, work| {
                 let streams = 1 + usize::from(self.polarised);
@@ -184,15 +186,17 @@ impl<'a, const N: usize> Transport<'a, N> {
         }
     }
 
-    /// Light of `field`, scattered or reflected once more.
+    /// Light of `field`, scattered or reflected once more, under some of its suns; none under others.
     ///
     /// # Errors
     /// [`Cancelled`] soon after cancellation.
     pub fn scattered(
         &self,
         field: &RadianceField<N>,
+        suns: &Range<usize>,
     ) -> Result<(Light<N>, ByDirection<N>), Cancelled> {
         self.gather(
+            suns,
             #[inline(always)]
             |path, bundle, work| {
                 path.accumulate_scattered(
@@ -267,17 +271,18 @@ impl<'a, const N: usize> Transport<'a, N> {
         row
     }
 
-    /// Integrates the light along the rays of each path with `accumulate` and projects it onto moments and irradiances on the
-    /// ground.
+    /// Integrates the light along the rays of each path under some of the suns with `accumulate` and projects it onto moments and
+    /// irradiances on the ground.
     fn gather(
         &self,
+        suns: &Range<usize>,
         accumulate: impl Fn(&Path<N>, &RayBundle, &mut Work<N>) + Send + Sync,
     ) -> Result<(Light<N>, ByDirection<N>), Cancelled> {
         let rows = parallel::try_map(self.paths.len(), |row| {
             self.control.check()?;
             Ok(vectorized(
                 #[inline(always)]
-                || self.gather_row(&self.paths[row], &accumulate),
+                || self.gather_row(&self.paths[row], suns, &accumulate),
             ))
         })?;
         let ground = rows[0].1.clone();
@@ -299,11 +304,13 @@ impl<'a, const N: usize> Transport<'a, N> {
         self.basis.count() + if self.polarised { POLARISED } else { 0 }
     }
 
-    /// Moments, `[sun][moment]`, downward irradiances, `[sun]`, and the light by direction, `[sun][path][mode]`, at one radius.
+    /// Moments, `[sun][moment]`, downward irradiances, `[sun]`, and the light by direction, `[sun][path][mode]`, at one radius; 0 but for
+    /// some of the suns.
     #[inline(always)]
     fn gather_row(
         &self,
         paths: &[(Path<N>, f64)],
+        some_suns: &Range<usize>,
         accumulate: &impl Fn(&Path<N>, &RayBundle, &mut Work<N>),
     ) -> (Vec<Spectrum<N>>, Vec<Spectrum<N>>, Vec<Spectrum<N>>) {
         let (suns, azimuths, count) = (
@@ -316,13 +323,13 @@ impl<'a, const N: usize> Transport<'a, N> {
         let mut downward = vec![Spectrum::ZERO; suns];
         let mut by_direction = vec![Spectrum::ZERO; suns * paths.len() * MODES];
         let mut work = Work {
-            light: vec![Spectrum::ZERO; suns * azimuths],
-            linear: vec![[Spectrum::ZERO; 2]; suns * azimuths],
+            light: vec![Spectrum::ZERO; some_suns.len() * azimuths],
+            linear: vec![[Spectrum::ZERO; 2]; some_suns.len() * azimuths],
             ..Default::default()
         };
         let mut y = [0.0; Harmonics::MAX_COUNT];
         for (place, (path, solid_weight)) in paths.iter().enumerate() {
-            let sun_cosines = self.grid.sun_cosines.iter().copied();
+            let sun_cosines = self.grid.sun_cosines[some_suns.clone()].iter().copied();
             let bundle = bundle_of(path.mu, sun_cosines, &self.azimuth_cosines);
             work.light.fill(Spectrum::ZERO);
             work.linear.fill([Spectrum::ZERO; 2]);
@@ -334,8 +341,8 @@ impl<'a, const N: usize> Transport<'a, N> {
             let tensor = |&cosine: &f64| amplitudes.at(cosine as f32);
             let tensor: Vec<_> = self.azimuth_cosines.iter().map(tensor).collect();
             let w = solid_weight * 2.0 * PI;
-            for sun in 0..suns {
-                let light = &work.light[sun * azimuths..][..azimuths];
+            for (slot, sun) in some_suns.clone().enumerate() {
+                let light = &work.light[slot * azimuths..][..azimuths];
                 // Means over the azimuth of the light times the cosines of its multiples.
                 let mut mean = [Spectrum::ZERO; Harmonics::MAX_DEGREE + 1];
                 for (light, cosines) in light.iter().zip(&self.azimuth_modes) {
@@ -362,7 +369,7 @@ impl<'a, const N: usize> Transport<'a, N> {
                 }
                 if self.polarised {
                     let weight = (w / azimuths as f64) as f32;
-                    let linear = &work.linear[sun * azimuths..][..azimuths];
+                    let linear = &work.linear[slot * azimuths..][..azimuths];
                     for (linear, tensor) in linear.iter().zip(&tensor) {
                         tensor.add_moments(*linear, weight, polarised);
                     }
