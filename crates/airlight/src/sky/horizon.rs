@@ -175,6 +175,9 @@ pub fn correction<const N: usize>(
     Some(rows.into_iter().flatten().collect())
 }
 
+/// Number of paths whose factors are summed together.
+const TOGETHER: usize = 4;
+
 /// Adds the correction for light along the rays at a radius with this horizon, `[sun][path][mode]`, given the moments `r_l` of the
 /// highest degrees; those of lower degrees are 1.
 #[inline(always)]
@@ -189,12 +192,22 @@ fn add<const N: usize>(
     let nodes = node_cosines(horizon);
     let rays = SingleRays::new(horizon, directions);
     let paths = rays.count;
+    let padded = paths.next_multiple_of(TOGETHER);
+    let mut node_weights = vec![Spectrum::ZERO; weights.len()];
     // The correction at a node for light along each ray.
     let mut factors = vec![Spectrum::ZERO; paths];
     let mut low_degrees = vec![0.0; paths];
     for (m, moments) in rays.moments.iter().enumerate() {
         let at_nodes = associated(m, &nodes);
-        let rounded: Vec<f32> = moments.iter().map(|moment| *moment as f32).collect();
+        let mut rounded = vec![0.0f32; (MAX_DEGREE + 1) * padded];
+        for (rounded, moments) in rounded
+            .chunks_exact_mut(padded)
+            .zip(moments.chunks_exact(paths))
+        {
+            for (rounded, moment) in rounded.iter_mut().zip(moments) {
+                *rounded = *moment as f32;
+            }
+        }
         for place in 0..nodes.len() {
             low_degrees.copy_from_slice(&rays.at_nodes[place * paths..][..paths]);
             for low in &mut low_degrees {
@@ -206,14 +219,26 @@ fn add<const N: usize>(
                     *low += node * moment;
                 }
             }
-            for (factor, low) in factors.iter_mut().zip(&low_degrees) {
-                *factor = Spectrum::splat(*low as f32);
+            for (l, (at_node, weight)) in (first_degree..).zip(node_weights.iter_mut().zip(weights))
+            {
+                *at_node = *weight * at_nodes[l * nodes.len() + place] as f32;
             }
-            for (l, weight) in (first_degree..).zip(weights) {
-                let at_node = *weight * at_nodes[l * nodes.len() + place] as f32;
-                for (factor, moment) in factors.iter_mut().zip(&rounded[l * paths..]) {
-                    *factor = factor.scale_acc(at_node, *moment);
+            let groups = factors
+                .chunks_mut(TOGETHER)
+                .zip(low_degrees.chunks(TOGETHER));
+            for (group, (factors, low_degrees)) in groups.enumerate() {
+                // In registers.
+                let mut sums = [Spectrum::ZERO; TOGETHER];
+                for (sum, low) in sums.iter_mut().zip(low_degrees) {
+                    *sum = Spectrum::splat(*low as f32);
                 }
+                for (l, at_node) in (first_degree..).zip(&node_weights) {
+                    let moments = &rounded[l * padded + group * TOGETHER..][..TOGETHER];
+                    for (sum, moment) in sums.iter_mut().zip(moments) {
+                        *sum = sum.scale_acc(*at_node, *moment);
+                    }
+                }
+                factors.copy_from_slice(&sums[..factors.len()]);
             }
             // The last node of each side is left out.
             let at = (place + place / INTERVALS) * MODES + m;
@@ -333,6 +358,8 @@ impl SingleRays {
     #[inline(always)]
     fn new(horizon: f64, directions: &Directions) -> Self {
         const POINTS: [usize; 3] = [40, 20, 40];
+        /// Number of rays whose moments are summed together.
+        const RAYS: usize = 8;
         let edges = piece_edges(horizon);
         let nodes = node_cosines(horizon);
         let count = ray_count(directions);
@@ -362,22 +389,30 @@ impl SingleRays {
             let rule = GaussRule::new(POINTS[piece]);
             let rule: Vec<_> = rule.on(edges[piece], edges[piece + 1]).collect();
             let cosines: Vec<f64> = rule.iter().map(|(mu, _)| *mu).collect();
-            // `[point][ray]`
-            let mut weighted = Vec::with_capacity(rule.len() * rays.len());
-            for &(mu, weight) in &rule {
-                weighted.extend((0..rays.len()).map(|ray| weight * light(ray, mu)));
-            }
+            // `[group][point]`: light along some rays times the weights of the rule.
+            let groups = (0..rays.len()).step_by(RAYS).map(|first| {
+                let of_point = |&(mu, weight): &(f64, f64)| {
+                    std::array::from_fn(|k| match first + k < rays.len() {
+                        true => weight * light(first + k, mu),
+                        false => 0.0,
+                    })
+                };
+                rule.iter().map(of_point).collect()
+            });
+            let groups: Vec<Vec<[f64; RAYS]>> = groups.collect();
             for (m, moments) in out.moments.iter_mut().enumerate() {
                 let associated = associated(m, &cosines);
-                for (moments, p) in moments
-                    .chunks_exact_mut(count)
-                    .zip(associated.chunks_exact(cosines.len()))
-                {
-                    let moments = &mut moments[first..first + rays.len()];
-                    for (p, weighted) in p.iter().zip(weighted.chunks_exact(rays.len())) {
-                        for (moment, weighted) in moments.iter_mut().zip(weighted) {
-                            *moment += p * weighted;
+                let rows = moments.chunks_exact_mut(count);
+                for (moments, p) in rows.zip(associated.chunks_exact(cosines.len())) {
+                    let moments = moments[first..first + rays.len()].chunks_mut(RAYS);
+                    for (moments, weighted) in moments.zip(&groups) {
+                        let mut sums = [0.0; RAYS];
+                        for (p, weighted) in p.iter().zip(weighted) {
+                            for (sum, weighted) in sums.iter_mut().zip(weighted) {
+                                *sum += p * weighted;
+                            }
                         }
+                        moments.copy_from_slice(&sums[..moments.len()]);
                     }
                 }
             }

@@ -297,19 +297,64 @@ impl<const N: usize> Mode<N> {
     }
 }
 
-/// Replaces a matrix by its factors L and U. No pivots are needed: the orders of scattering fall, so the diagonal dominates.
+/// Number of pivot rows that are subtracted from a row at a time.
+const PIVOTS: usize = 4;
+
+/// Replaces a matrix by its factors L and U. No pivoting is needed: the orders of scattering fall, so the diagonal dominates.
 #[inline(always)]
 fn factorise<const N: usize>(matrix: &mut [Spectrum<N>], size: usize) {
-    for k in 0..size {
-        let (above, below) = matrix.split_at_mut((k + 1) * size);
-        let pivot_row = &above[k * size..];
-        let inverse = Spectrum::ONE / pivot_row[k];
+    let mut first = 0;
+    while first < size {
+        let end = (first + PIVOTS).min(size);
+        let (above, below) = matrix.split_at_mut(end * size);
+        let pivots = &mut above[first * size..];
+        for k in 1..end - first {
+            let (done, rest) = pivots.split_at_mut(k * size);
+            eliminate(&mut rest[..size], done, first);
+        }
         for row in below.chunks_exact_mut(size) {
-            let factor = row[k] * inverse;
-            row[k] = factor;
-            let factor = Spectrum::ZERO - factor;
-            for (a, b) in row[k + 1..].iter_mut().zip(&pivot_row[k + 1..]) {
-                *a = a.mul_acc(factor, *b);
+            eliminate(row, pivots, first);
+        }
+        first = end;
+    }
+}
+
+/// Subtracts factorised rows, the first of which has its diagonal at column `first`, from a row below them.
+#[inline(always)]
+fn eliminate<const N: usize>(row: &mut [Spectrum<N>], pivots: &[Spectrum<N>], first: usize) {
+    let size = row.len();
+    let count = pivots.len() / size;
+    let mut factors = [Spectrum::ZERO; PIVOTS];
+    for k in 0..count {
+        let pivot = &pivots[k * size + first..];
+        let factor = row[first + k] / pivot[k];
+        row[first + k] = factor;
+        factors[k] = Spectrum::ZERO - factor;
+        for (a, b) in row[first + k + 1..first + count]
+            .iter_mut()
+            .zip(&pivot[k + 1..])
+        {
+            *a = a.mul_acc(factors[k], *b);
+        }
+    }
+    let right = &mut row[first + count..];
+    let pivot = |k: usize| &pivots[k * size + first + count..(k + 1) * size];
+    match count {
+        PIVOTS => {
+            let pivots = pivot(0).iter().zip(pivot(1)).zip(pivot(2)).zip(pivot(3));
+            for (a, (((p, q), r), s)) in right.iter_mut().zip(pivots) {
+                *a = a
+                    .mul_acc(factors[0], *p)
+                    .mul_acc(factors[1], *q)
+                    .mul_acc(factors[2], *r)
+                    .mul_acc(factors[3], *s);
+            }
+        }
+        _ => {
+            for (k, factor) in factors[..count].iter().enumerate() {
+                for (a, b) in right.iter_mut().zip(pivot(k)) {
+                    *a = a.mul_acc(*factor, *b);
+                }
             }
         }
     }
