@@ -30,7 +30,7 @@ pub enum Suite {
 airlight::named! { Suite, "a set of comparisons", [
     ("tables", (Tables), "skies against tables of an independent Monte Carlo, SASKTRAN2 and libRadtran"),
     ("monte-carlo", (MonteCarlo), "skies in daylight and twilight against Airlight's Monte Carlo solver"),
-    ("limits", (Limits), "the sky around the sun, polarised light and optically thick air against Monte Carlo and discrete ordinates"),
+    ("limits", (Limits), "the sky around the sun, polarised light and optically thick air against Monte Carlo and discrete ordinates; energy and reciprocity"),
     ("random-airs", (RandomAirs), "skies of random airs, suns, eyes and views against Airlight's Monte Carlo"),
     ("peers", (Peers), "published sky models against the default solver"),
     ("measured", (Measured), "the sky measured on 27 May 2013 against the solver and published models"),
@@ -78,6 +78,8 @@ pub enum Unit {
     Percent,
     /// `ours - reference`, mW m^-2 sr^-1 nm^-1 (values in W m^-2 sr^-1 nm^-1).
     Milliwatts,
+    /// `ours - reference` of fractions, percentage points.
+    Points,
     /// Colour difference of `ours` from the reference.
     Ciede2000,
 }
@@ -88,6 +90,7 @@ impl Unit {
         match self {
             Self::Percent => 100.0 * (row.ours / row.reference - 1.0),
             Self::Milliwatts => 1e3 * (row.ours - row.reference),
+            Self::Points => 100.0 * (row.ours - row.reference),
             Self::Ciede2000 => row.ours - row.reference,
         }
     }
@@ -97,6 +100,7 @@ impl Unit {
         match self {
             Self::Percent => 100.0 * row.standard_error / row.reference,
             Self::Milliwatts => 1e3 * row.standard_error,
+            Self::Points => 100.0 * row.standard_error,
             Self::Ciede2000 => row.standard_error,
         }
     }
@@ -107,6 +111,7 @@ impl fmt::Display for Unit {
         f.write_str(match self {
             Self::Percent => "%",
             Self::Milliwatts => "mW/(m2 sr nm)",
+            Self::Points => "percentage points",
             Self::Ciede2000 => "CIEDE2000",
         })
     }

@@ -1,8 +1,9 @@
-//! Skies where solvers fail: around the sun and at the horizon in coarse aerosol, polarised light, optically thick air.
+//! Skies where solvers fail: around the sun and at the horizon in coarse aerosol, polarised light, optically thick air; and laws that
+//! light obeys, the conservation of energy and reciprocity.
 //!
 //! The tables are those of tests of the crate `airlight`, which recompute the ones by path tracing.
 
-use crate::check::{Check, Row, Suite, Unit};
+use crate::check::{At, Check, Row, Suite, Unit};
 use crate::skies::truth_air;
 use crate::solved::Solved;
 use crate::table::{Line, Table};
@@ -14,6 +15,8 @@ use airlight::{Cancelled, Control};
 
 const AUREOLE: &str = include_str!("../data/sky_aureole_monte_carlo.csv");
 const HORIZON: &str = include_str!("../data/sky_horizon_monte_carlo.csv");
+const HAZE: &str = include_str!("../data/sky_haze_monte_carlo.csv");
+const SMOKE: &str = include_str!("../data/sky_smoke_monte_carlo.csv");
 const POLARISED: &str = include_str!("../data/sky_polarised_monte_carlo.csv");
 const SLABS: &str = include_str!("../data/sky_slabs_disort.csv");
 
@@ -30,6 +33,10 @@ pub fn checks(control: Control<'_>) -> Result<Vec<Check>, Cancelled> {
         at_the_horizon(control)?,
         polarised(control)?,
         thick(control)?,
+        thick_haze(control)?,
+        smoke(control)?,
+        energy(control)?,
+        reciprocity(control)?,
     ]
     .concat())
 }
@@ -72,61 +79,102 @@ fn scalar() -> SkySettings {
     }
 }
 
+/// Air in which views are compared with path tracing, and the claim about them.
+struct Case {
+    air: Atmosphere,
+    altitude_m: f64,
+    what: String,
+    limit: f64,
+}
+
 /// Views from 1 to 10 degrees beside the sun.
 fn around_the_sun(control: Control<'_>) -> Result<Vec<Check>, Cancelled> {
     let columns = ["air", "aod_550", "sun"];
-    in_particles(AUREOLE, &columns, control, |group, of| {
-        let sun = group.number("sun");
-        let limit = if sun < 5.0 { 3.5 } else { 1.5 };
-        (format!("around a sun at {sun} degrees, {of}"), limit)
+    against_paths(AUREOLE, &columns, control, |line| {
+        let (air, of) = particles(line);
+        let sun = line.number("sun");
+        Case {
+            air,
+            altitude_m: 0.0,
+            what: format!("around a sun at {sun} degrees, {of}"),
+            limit: if sun < 5.0 { 3.5 } else { 1.5 },
+        }
     })
 }
 
 /// Views from 0.3 to 8 degrees above the horizon, and from 1 km on both sides of it.
 fn at_the_horizon(control: Control<'_>) -> Result<Vec<Check>, Cancelled> {
     let columns = ["air", "aod_550", "sun", "altitude_m"];
-    in_particles(HORIZON, &columns, control, |group, of| {
-        let [sun, altitude_m] = ["sun", "altitude_m"].map(|name| group.number(name));
-        (
-            format!("at the horizon from {altitude_m} m, sun at {sun} degrees, {of}"),
-            1.5,
-        )
+    against_paths(HORIZON, &columns, control, |line| {
+        let (air, of) = particles(line);
+        let [sun, altitude_m] = ["sun", "altitude_m"].map(|name| line.number(name));
+        Case {
+            air,
+            altitude_m,
+            what: format!("at the horizon from {altitude_m} m, sun at {sun} degrees, {of}"),
+            limit: 1.5,
+        }
     })
 }
 
-/// Views in air with particles, whose name and limit follow from the first line of a group and the name of the air.
-fn in_particles(
+/// Height of the eye under thick haze and smoke, m.
+const EYE_M: f64 = 2.0;
+
+/// The default haze with optical depths of 5 to 30.
+fn thick_haze(control: Control<'_>) -> Result<Vec<Check>, Cancelled> {
+    against_paths(HAZE, &["depth", "sun"], control, |line| {
+        let (depth, sun) = (line.text("depth"), line.text("sun"));
+        let text = format!("aerosol.aod_550 = {depth}");
+        Case {
+            air: Atmosphere::from_toml(&text).expect("a haze"),
+            altitude_m: EYE_M,
+            what: format!("haze of optical depth {depth}, sun at {sun} degrees"),
+            limit: 2.0,
+        }
+    })
+}
+
+/// The smoke of forest fires.
+fn smoke(control: Control<'_>) -> Result<Vec<Check>, Cancelled> {
+    against_paths(SMOKE, &["sun"], control, |line| Case {
+        air: atmosphere::preset("wildfire").expect("a preset"),
+        altitude_m: EYE_M,
+        what: format!("smoke of forest fires, sun at {} degrees", line.text("sun")),
+        limit: 2.0,
+    })
+}
+
+/// Air with the particles of a line, and what it is called.
+fn particles(line: &Line<'_>) -> (Atmosphere, String) {
+    match (line.text("air"), line.text("aod_550")) {
+        (name, "") => (atmosphere::preset(name).expect("a preset"), name.to_owned()),
+        (name, depth) => {
+            let text = format!("aerosol.type = \"{name}\"\naerosol.aod_550 = {depth}");
+            (
+                Atmosphere::from_toml(&text).expect("an aerosol"),
+                format!("{name} aerosol of optical depth {depth}"),
+            )
+        }
+    }
+}
+
+/// Views of scalar light by path tracing, in the cases of groups of lines.
+fn against_paths(
     text: &'static str,
     columns: &[&str],
     control: Control<'_>,
-    claim: impl Fn(&Line<'_>, &str) -> (String, f64),
+    case: impl Fn(&Line<'_>) -> Case,
 ) -> Result<Vec<Check>, Cancelled> {
     const WAVELENGTHS_NM: [f64; 3] = [440.0, 550.0, 680.0];
     let table = Table::new(text);
     let groups = groups(&table, columns);
     let check = |group: &Vec<Line<'_>>| {
-        let (name, depth) = (group[0].text("air"), group[0].text("aod_550"));
-        let altitude_m = match group[0].has("altitude_m") {
-            true => group[0].number("altitude_m"),
-            false => 0.0,
-        };
-        let air = match depth {
-            "" => atmosphere::preset(name).expect("a preset"),
-            _ => {
-                let text = format!("aerosol.type = \"{name}\"\naerosol.aod_550 = {depth}");
-                Atmosphere::from_toml(&text).expect("an aerosol")
-            }
-        };
+        let case = case(&group[0]);
         let zenith_deg = 90.0 - group[0].number("sun");
-        let solved = Solved::of_table(&air, &WAVELENGTHS_NM, zenith_deg, &scalar(), control)?
+        let solved = Solved::of_table(&case.air, &WAVELENGTHS_NM, zenith_deg, &scalar(), control)?
             .with_mean_sunlight()
-            .seen_from(altitude_m);
-        let of = match depth {
-            "" => name.to_owned(),
-            _ => format!("{name} aerosol of optical depth {depth}"),
-        };
-        let (what, limit) = claim(&group[0], &of);
-        let mut check = check(what, "Airlight's Monte Carlo", limit);
+            .seen_from(case.altitude_m);
+        let mut check = check(case.what, "Airlight's Monte Carlo", case.limit);
         for line in group {
             let view = (90.0 - line.number("elevation"), line.number("azimuth"));
             let light = solved.look(view.0, view.1);
@@ -144,20 +192,27 @@ fn in_particles(
     groups.iter().map(check).collect()
 }
 
-/// Radiance of polarised light.
+/// Radiance of polarised light, and its Q and U.
 fn polarised(control: Control<'_>) -> Result<Vec<Check>, Cancelled> {
     const WAVELENGTHS_NM: [f64; 4] = [360.0, 450.0, 550.0, 650.0];
+    const AGAINST: &str = "Airlight's Monte Carlo, polarised";
     let table = Table::new(POLARISED);
-    let groups = groups(&table, &["air", "sun_elevation_deg"]);
-    let check = |group: &Vec<Line<'_>>| {
+    let mut checks = Vec::new();
+    for group in groups(&table, &["air", "sun_elevation_deg"]) {
         let (name, sun) = (group[0].text("air"), group[0].number("sun_elevation_deg"));
         let air = truth_air(name).expect("a known atmosphere");
         let settings = SkySettings::default();
         let solved = Solved::of_table(&air, &WAVELENGTHS_NM, 90.0 - sun, &settings, control)?
             .with_mean_sunlight();
         let limit = if sun < 0.0 { 3.0 } else { 1.0 };
-        let what = format!("polarised light, {name}, sun at {sun} degrees");
-        let mut check = check(what, "Airlight's Monte Carlo, polarised", limit);
+        let of = format!("{name}, sun at {sun} degrees");
+        let mut radiance = check(format!("polarised light, {of}"), AGAINST, limit);
+        let mut linear = Check {
+            unit: Unit::Points,
+            limit: None,
+            limit_of_rms: Some(if name == "clear" { 0.5 } else { 4.5 }),
+            ..check(format!("Q and U as parts of I, {of}"), AGAINST, 0.0)
+        };
         for line in group {
             let view = (
                 90.0 - line.number("elevation_deg"),
@@ -166,16 +221,26 @@ fn polarised(control: Control<'_>) -> Result<Vec<Check>, Cancelled> {
             let nm = line.number("wavelength_nm");
             let lane = WAVELENGTHS_NM.iter().position(|known| *known == nm);
             let lane = lane.expect("a known wavelength");
-            check.rows.push(Row {
-                at: solved.at(view.0, view.1, lane),
-                ours: solved.look(view.0, view.1).all[lane],
-                reference: line.number("i"),
+            let (at, intensity) = (solved.at(view.0, view.1, lane), line.number("i"));
+            let light = solved.look(view.0, view.1);
+            radiance.rows.push(Row {
+                at,
+                ours: light.all[lane],
+                reference: intensity,
                 standard_error: line.number("i_error"),
             });
+            for (ours, name) in solved.linear(view.0, view.1).iter().zip(["q", "u"]) {
+                linear.rows.push(Row {
+                    at,
+                    ours: ours[lane] / intensity,
+                    reference: line.number(name) / intensity,
+                    standard_error: line.number(&format!("{name}_error")) / intensity,
+                });
+            }
         }
-        Ok(check)
-    };
-    groups.iter().map(check).collect()
+        checks.extend([radiance, linear]);
+    }
+    Ok(checks)
 }
 
 /// Uniform slabs seen from the ground.
@@ -184,7 +249,8 @@ fn thick(control: Control<'_>) -> Result<Vec<Check>, Cancelled> {
     let mut checks: Vec<Check> = Vec::new();
     for group in groups(&table, &["sun_zenith", "omega", "g", "tau", "albedo"]) {
         let [sun, depth] = ["sun_zenith", "tau"].map(|name| group[0].number(name));
-        let air = slab(&group[0]);
+        let of = |name| group[0].number(name);
+        let air = slab(of("tau"), of("omega"), of("g"), of("albedo"));
         let solved = Solved::of_table(&air, &[550.0], sun, &scalar(), control)?;
         let limit = match depth {
             ..=5.0 => 1.0,
@@ -214,21 +280,94 @@ fn thick(control: Control<'_>) -> Result<Vec<Check>, Cancelled> {
     Ok(checks)
 }
 
-/// The slab of a line of its table, on a planet as large as the Earth.
-fn slab(line: &Line<'_>) -> Atmosphere {
+/// Light that leaves slabs without absorption and is absorbed by the ground, relative to the sunlight that arrives.
+fn energy(control: Control<'_>) -> Result<Vec<Check>, Cancelled> {
+    const SUN_ZENITH_DEG: f64 = 30.0;
+    let of_ground = |ground_albedo: f64| {
+        let what = format!("energy in slabs without absorption, ground albedo {ground_albedo}");
+        let mut check = check(what, "the conservation of energy", 0.3);
+        for depth in [0.1, 1.0, 5.0, 20.0, 100.0] {
+            for asymmetry in [0.0, 0.7] {
+                let air = slab(depth, 1.0, asymmetry, ground_albedo);
+                let solved = Solved::of_table(&air, &[550.0], SUN_ZENITH_DEG, &scalar(), control)?;
+                let arriving = solved.solar()[0] * SUN_ZENITH_DEG.to_radians().cos();
+                let received = solved.ground_irradiance()[0];
+                let sent_up = solved.seen_from(SLAB_M).upwelling_irradiance()[0];
+                check.rows.push(Row {
+                    at: At {
+                        sun_zenith_deg: SUN_ZENITH_DEG,
+                        wavelength_nm: Some(550.0),
+                        ..At::default()
+                    },
+                    ours: sent_up + (1.0 - ground_albedo) * received,
+                    reference: arriving,
+                    standard_error: 0.0,
+                });
+            }
+        }
+        Ok(check)
+    };
+    [0.0, 0.5, 1.0].into_iter().map(of_ground).collect()
+}
+
+/// Light sent up by plane-parallel air relative to the irradiance of the horizontal, with the directions to the sun and to the eye
+/// exchanged.
+fn reciprocity(control: Control<'_>) -> Result<Vec<Check>, Cancelled> {
+    const WAVELENGTHS_NM: [f64; 3] = [440.0, 550.0, 680.0];
+    /// Zenith angles of the sun and of the direction to the eye, and the azimuth between them.
+    const PAIRS: [[f64; 3]; 3] = [[10.0, 60.0, 40.0], [30.0, 75.0, 130.0], [55.0, 80.0, 10.0]];
+    let of_air = |(name, mut air): (&str, Atmosphere)| {
+        let mut check = check(
+            format!("light sent up by {name}, sun and eye exchanged"),
+            "reciprocity",
+            0.6,
+        );
+        // So large that the air is plane-parallel.
+        air.planet.radius_m *= 1e3;
+        let top_m = air.planet.top_altitude_m;
+        for [sun, eye, azimuth] in PAIRS {
+            let sent = |sun: f64, eye: f64| {
+                let solved = Solved::of_table(&air, &WAVELENGTHS_NM, sun, &scalar(), control)?;
+                let solved = solved.seen_from(top_m);
+                // The view is opposite to the direction to the eye.
+                let view = (180.0 - eye, azimuth + 180.0);
+                let light = solved.look(view.0, view.1).all;
+                let ats = [0, 1, 2].map(|lane| solved.at(view.0, view.1, lane));
+                let level = sun.to_radians().cos();
+                Ok((ats, light.into_iter().map(move |light| light / level)))
+            };
+            let ((ats, there), (_, back)) = (sent(sun, eye)?, sent(eye, sun)?);
+            let lanes = ats.into_iter().zip(there.zip(back));
+            check.rows.extend(lanes.map(|(at, (there, back))| Row {
+                at,
+                ours: there,
+                reference: back,
+                standard_error: 0.0,
+            }));
+        }
+        Ok(check)
+    };
+    let preset = |name| (name, atmosphere::preset(name).expect("a preset"));
+    let airs = [
+        preset("hazy"),
+        preset("wildfire"),
+        ("a slab of optical depth 20", slab(20.0, 0.99, 0.7, 0.3)),
+    ];
+    airs.into_iter().map(of_air).collect()
+}
+
+/// A uniform slab with an optical depth, a single-scattering albedo, an asymmetry and a ground albedo, on a planet as large as the Earth.
+fn slab(depth: f64, albedo: f64, g: f64, ground_albedo: f64) -> Atmosphere {
     let mut air = Atmosphere::from_toml("base = \"none\"").expect("no air");
     air.planet.top_altitude_m = SLAB_M;
-    air.planet.ground_albedo = SpectralCurve::Constant(line.number("albedo"));
+    air.planet.ground_albedo = SpectralCurve::Constant(ground_albedo);
     air.solar_irradiance = SpectralCurve::Constant(1.0);
-    let (depth, albedo) = (line.number("tau"), line.number("omega"));
     air.constituents = vec![Constituent {
         kind: ConstituentKind::Fog,
         density: DensityProfile::slab(2.0 * SLAB_M),
         scattering_per_m: SpectralCurve::Constant(depth / SLAB_M * albedo),
         absorption_per_m: SpectralCurve::Constant(depth / SLAB_M * (1.0 - albedo)),
-        phase: PhaseFunction::HenyeyGreenstein {
-            g: line.number("g"),
-        },
+        phase: PhaseFunction::HenyeyGreenstein { g },
     }];
     air
 }

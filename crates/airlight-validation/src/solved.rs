@@ -3,7 +3,7 @@
 use crate::check::At;
 use airlight::atmosphere::Atmosphere;
 use airlight::axes::direction;
-use airlight::sky::{Sky, SkyError, SkySettings, SunCoverage};
+use airlight::sky::{Sky, SkyError, SkySettings, SunCoverage, View};
 use airlight::spectrum::WavelengthGrid;
 use airlight::{Cancelled, Control};
 
@@ -101,26 +101,63 @@ impl Solved {
 
     /// Radiance in a direction.
     pub fn look(&self, view_zenith_deg: f64, relative_azimuth_deg: f64) -> Light {
-        let view = self
-            .sky
-            .view(self.altitude_m, direction(0.0, 90.0 - self.sun_zenith_deg));
+        let view = self.view();
         let towards = direction(relative_azimuth_deg, 90.0 - view_zenith_deg);
         let line = view.along(towards, None);
-        let scale: Vec<f64> = self
-            .solar
-            .iter()
-            .zip(view.solar_irradiance())
-            .map(|(at, mean)| at / f64::from(mean) / self.sun_distance.powi(2))
-            .collect();
-        let scaled = |light: &[f32]| {
-            let lanes = light.iter().zip(&scale);
-            lanes.map(|(&l, s)| f64::from(l) * s).collect()
-        };
+        let lit = |light: &[f32]| self.under_this_sun(&view, light);
         Light {
-            single: scaled(&line.single),
-            path: scaled(&line.path_radiance()),
-            all: scaled(&line.radiance()),
+            single: lit(&line.single),
+            path: lit(&line.path_radiance()),
+            all: lit(&line.radiance()),
         }
+    }
+
+    /// Q and U in a direction at each wavelength, W m^-2 sr^-1 nm^-1.
+    pub fn linear(&self, view_zenith_deg: f64, relative_azimuth_deg: f64) -> [Vec<f64>; 2] {
+        let view = self.view();
+        let light = view.polarised(direction(relative_azimuth_deg, 90.0 - view_zenith_deg));
+        [light.q, light.u].map(|part| self.under_this_sun(&view, &part))
+    }
+
+    /// Irradiance on the ground by sun and sky at each wavelength, W m^-2 nm^-1.
+    pub fn ground_irradiance(&self) -> Vec<f64> {
+        let view = self.sky.view(
+            self.sky.atmosphere().planet.ground_altitude_m,
+            direction(0.0, 90.0 - self.sun_zenith_deg),
+        );
+        let level = view.sun().y as f32;
+        let sun = view.sun_irradiance().into_iter();
+        let both = sun.zip(view.downwelling_irradiance());
+        let both: Vec<f32> = both.map(|(sun, sky)| sun * level + sky).collect();
+        self.under_this_sun(&view, &both)
+    }
+
+    /// Irradiance from below at each wavelength, W m^-2 nm^-1.
+    pub fn upwelling_irradiance(&self) -> Vec<f64> {
+        let view = self.view();
+        self.under_this_sun(&view, &view.upwelling_irradiance())
+    }
+
+    /// Solar irradiance outside the air at each wavelength, W m^-2 nm^-1.
+    pub fn solar(&self) -> Vec<f64> {
+        let scale = self.sun_distance.powi(-2);
+        self.solar.iter().map(|solar| solar * scale).collect()
+    }
+
+    /// The view from the altitude.
+    fn view(&self) -> View {
+        self.sky
+            .view(self.altitude_m, direction(0.0, 90.0 - self.sun_zenith_deg))
+    }
+
+    /// Light of a view under the sun of this sky.
+    fn under_this_sun(&self, view: &View, light: &[f32]) -> Vec<f64> {
+        let solar = self.solar().into_iter().zip(view.solar_irradiance());
+        light
+            .iter()
+            .zip(solar)
+            .map(|(&light, (at, mean))| f64::from(light) * at / f64::from(mean))
+            .collect()
     }
 
     /// Identifies the value at a direction and wavelength.
