@@ -183,11 +183,14 @@ impl Fog {
     }
 
     fn sky_light(&self, control: Control<'_>) -> Result<Option<Arc<SkyLight>>, Failure> {
-        let mut sky = self.sky.lock().unwrap_or_else(PoisonError::into_inner);
-        if sky.is_none() {
-            *sky = self.scene.solve_sky_with(control)?.map(Arc::new);
+        // Solved without the lock: threads of the pool would wait for each other.
+        let known = || self.sky.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(sky) = known().clone() {
+            return Ok(Some(sky));
         }
-        Ok(sky.clone())
+        let solved = self.scene.solve_sky_with(control)?.map(Arc::new);
+        known().clone_from(&solved);
+        Ok(solved)
     }
 
     /// Rows of a picture in fog: colours, or with `layers` ten channels.

@@ -4,6 +4,21 @@
 #[cfg(feature = "parallel")]
 use rayon::prelude::*;
 
+/// The result of `f`, computed on threads apart from those of the current pool, as many of them: for what other threads wait for under a
+/// lock. A thread of a pool that waits for a part of its work takes up other work, which may be such a wait; and threads that wait under a
+/// lock do not work.
+pub(crate) fn apart<T: Send>(f: impl FnOnce() -> T + Send) -> T {
+    #[cfg(all(feature = "parallel", not(target_arch = "wasm32")))]
+    {
+        let threads = rayon::current_num_threads();
+        if let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+            let result = std::thread::scope(|scope| scope.spawn(|| pool.install(f)).join());
+            return result.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        }
+    }
+    f()
+}
+
 /// Results of `f(0)` to `f(count - 1)`.
 pub(crate) fn map<T: Send>(count: usize, f: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
     #[cfg(feature = "parallel")]
@@ -82,6 +97,12 @@ pub(crate) fn try_map_chunks<S: Sync, T: Send, E: Send>(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_runs_apart_may_be_parallel_and_panic() {
+        assert_eq!(apart(|| map(100, |i| i).iter().sum::<usize>()), 4950);
+        assert!(std::panic::catch_unwind(|| apart(|| panic!("as expected"))).is_err());
+    }
 
     #[test]
     fn each_iteration_runs_once_and_in_order() {

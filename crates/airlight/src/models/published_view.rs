@@ -2,6 +2,7 @@
 //! [`RadianceView`].
 
 use crate::axes;
+use crate::math::parallel;
 use crate::scene::{Channels, IrradianceMap, RadianceView, SceneError, horizontal_irradiance};
 use crate::sky::LineOfSight;
 use crate::spectrum::rgb::{self, DOMINANT_NM};
@@ -268,10 +269,12 @@ impl RadianceView for PublishedView {
     fn irradiance(&self, normals: &[DVec3], out: &mut [f32]) {
         let count = self.channel_count();
         let map = self.irradiance.get_or_init(|| {
-            IrradianceMap::new(self.model.sun(), count, |directions, out| {
-                for (&direction, out) in directions.iter().zip(out.chunks_exact_mut(count)) {
-                    self.put_light(&self.along(direction), out);
-                }
+            parallel::apart(|| {
+                IrradianceMap::new(self.model.sun(), count, |directions, out| {
+                    for (&direction, out) in directions.iter().zip(out.chunks_exact_mut(count)) {
+                        self.put_light(&self.along(direction), out);
+                    }
+                })
             })
         });
         for (&normal, out) in normals.iter().zip(out.chunks_exact_mut(count)) {

@@ -437,11 +437,13 @@ impl GlowView {
     /// Irradiance of surfaces with a unit normal, added to `out`.
     pub fn add_irradiance(&self, normal: DVec3, out: &mut [f32]) {
         let map = self.irradiance.get_or_init(|| {
-            IrradianceMap::new(DVec3::Y, self.count, |directions, out| {
-                let values = out.chunks_exact_mut(self.count);
-                for (&direction, values) in directions.iter().zip(values) {
-                    self.radiance(direction, values);
-                }
+            parallel::apart(|| {
+                IrradianceMap::new(DVec3::Y, self.count, |directions, out| {
+                    let values = out.chunks_exact_mut(self.count);
+                    for (&direction, values) in directions.iter().zip(values) {
+                        self.radiance(direction, values);
+                    }
+                })
             })
         });
         let mut values = vec![0.0; self.count];

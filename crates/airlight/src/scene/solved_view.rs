@@ -8,6 +8,7 @@ use super::sun_disc_table::SunDiscTable;
 use super::{Channels, FogLayers, IrradianceMap, RadianceView, RowSampler, SceneError};
 use crate::axes;
 use crate::control::{Cancelled, Control};
+use crate::math::parallel;
 use crate::sky::{
     LightSource, LineOfSight, PolarisationTable, PolarisedLight, SkyColumns, SkyTable, View,
 };
@@ -274,8 +275,10 @@ impl RadianceView for SolvedView {
     fn irradiance(&self, normals: &[DVec3], out: &mut [f32]) {
         let count = self.channel_count();
         let map = self.irradiance.get_or_init(|| {
-            IrradianceMap::new(self.sun(), count, |directions, out| {
-                self.radiance(directions, out)
+            parallel::apart(|| {
+                IrradianceMap::new(self.sun(), count, |directions, out| {
+                    self.radiance(directions, out)
+                })
             })
         });
         for (&normal, out) in normals.iter().zip(out.chunks_exact_mut(count)) {
@@ -284,7 +287,7 @@ impl RadianceView for SolvedView {
     }
 
     fn horizontal_irradiance(&self, out: &mut [f32]) {
-        let irradiance = self.horizontal_irradiance.get_or_init(|| {
+        let compute = || {
             let mut sum = vec![0.0; self.channel_count()];
             match (&self.clear, &self.fog) {
                 (None, _) => {
@@ -298,7 +301,10 @@ impl RadianceView for SolvedView {
                 self.sample(direction, values);
             });
             sum
-        });
+        };
+        let irradiance = self
+            .horizontal_irradiance
+            .get_or_init(|| parallel::apart(compute));
         out.copy_from_slice(irradiance);
     }
 

@@ -5,6 +5,7 @@ use super::coverage::SunCoverage;
 use super::settings::{SkyError, SkySettings};
 use crate::atmosphere::Atmosphere;
 use crate::control::Control;
+use crate::math::parallel;
 use crate::spectrum::WavelengthGrid;
 use crate::transfer::columns::SlantColumns;
 use crate::transfer::shell::Shell;
@@ -143,7 +144,7 @@ impl Sky {
                     ..self.0.settings.clone()
                 };
                 let (air, grid) = (&self.0.atmosphere, &self.0.grid);
-                match Self::prepare_with(air, grid, &settings, control) {
+                match parallel::apart(|| Self::prepare_with(air, grid, &settings, control)) {
                     Err(SkyError::Cancelled(cancelled)) => return Err(cancelled.into()),
                     solved => drop(wider.set(solved)),
                 }

@@ -10,6 +10,7 @@ use airlight::optics::PhaseFunction;
 use airlight::sky::{LineOfSight, Scattering, Sky, SkySettings, SunCoverage, TableChannels};
 use airlight::spectrum::{RgbSpace, SpectralCurve, WavelengthGrid};
 use glam::DVec3;
+use rayon::prelude::*;
 
 fn relative_difference(a: &[f32], b: &[f32]) -> f32 {
     a.iter()
@@ -38,6 +39,69 @@ fn a_line_of_sight_may_be_split_anywhere() {
             );
         }
     }
+}
+
+/// However far the suns that a sky was prepared for are from that of a view.
+#[test]
+fn a_view_is_that_of_a_sky_prepared_for_its_sun() {
+    for (prepared_deg, sun_deg) in [
+        (1.0, -0.9),
+        (1.0, 0.8),
+        (-4.0, -2.1),
+        (-4.0, -4.2),
+        (10.0, 8.2),
+        (10.0, 9.8),
+        (60.0, 59.0),
+    ] {
+        let skies = [prepared_deg, sun_deg].map(|deg| sky("hazy", SunCoverage::near(deg, 0.0)));
+        let views = skies.map(|sky| sky.view(2.0, direction(0.0, sun_deg)));
+        let (mut worst, mut squares, mut count) = (0.0f32, 0.0, 0.0);
+        for (azimuth, elevation) in
+            (0..12).map(|k| (60.0 * f64::from(k % 4), [1.0, 15.0, 60.0][k as usize / 4]))
+        {
+            let towards = direction(azimuth, elevation);
+            let [far, near] = [0, 1].map(|k| views[k].along(towards, None).radiance());
+            for (a, b) in far.iter().zip(&near) {
+                let difference = a / b - 1.0;
+                worst = worst.max(difference.abs());
+                squares += difference * difference;
+                count += 1.0;
+            }
+        }
+        let rms = (squares / count).sqrt();
+        println!(
+            "{prepared_deg} {sun_deg}: rms {:.2} %, worst {:.2} %",
+            100.0 * rms,
+            100.0 * worst
+        );
+        assert!(
+            rms < 4e-3 && worst < 0.012,
+            "{prepared_deg} {sun_deg}: {rms} {worst}"
+        );
+    }
+}
+
+/// Views from threads of a pool that also solve, for suns that the sky was not prepared for: a thread that waits for the solution must
+/// not be one that it needs.
+#[test]
+fn views_that_solve_again_on_many_threads_end() {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(4).build();
+    pool.unwrap().install(|| {
+        for _ in 0..3 {
+            let settings = SkySettings {
+                suns: SunCoverage::near(60.0, 0.0),
+                altitudes: 6,
+                ..SkySettings::default()
+            };
+            let air = presets::preset("clear").unwrap();
+            let sky = Sky::prepare(&air, &WavelengthGrid::rgb(), &settings).unwrap();
+            let lit = (0..64).into_par_iter().filter(|k| {
+                let view = sky.view(0.0, direction(0.0, 20.0 + 0.1 * f64::from(*k)));
+                view.along(DVec3::Y, None).radiance()[0] > 0.0
+            });
+            assert_eq!(lit.count(), 64);
+        }
+    });
 }
 
 #[test]
