@@ -36,7 +36,7 @@ const AZIMUTHS: [f64; 5] = [0.05, 0.2, 0.45, 0.7, 1.0];
 const ABOVE: [f64; 6] = [0.008, 0.03, 0.1, 0.3, 0.6, 0.95];
 const BELOW: [f64; 4] = [-0.01, -0.05, -0.2, -0.7];
 /// Lengths of the view rays, m: those of aerial perspective, and whole ones.
-const LENGTHS_M: [f64; 2] = [1e4, f64::INFINITY];
+const LENGTHS_M: [f64; 2] = [3e4, f64::INFINITY];
 /// Wavelengths between which the ratio to the coarse solution is interpolated, nm; it is constant beyond.
 const RATIO_RANGE_NM: [f64; 2] = [390.0, 730.0];
 /// Heights on the sun's disc, as parts of what is above the horizon.
