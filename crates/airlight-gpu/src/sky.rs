@@ -62,7 +62,7 @@ fn numbers(source: &SourceTables, scales: SkyScales) -> Vec<f32> {
         tables.view.even_below,
         tables.view.jump_height_m,
         tables.view.jump_place,
-        tables.view.level_step,
+        tables.view.jump_part,
         0.0,
         0.0,
         0.0,

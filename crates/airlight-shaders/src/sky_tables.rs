@@ -226,7 +226,7 @@ fn sky_view(view: &View, coordinates: &TableCoordinates, jump: &Jump) -> twin::S
         even_below: coordinates.even_below as f32,
         jump_height_m: jump.height_m,
         jump_place: 0.0,
-        level_step: 0.0,
+        jump_part: 0.0,
         extinction_above: jump.extinction,
         smooth_above: jump.smooth,
         haze_above: jump.haze,
@@ -256,8 +256,7 @@ fn with_place_of_jump(view: twin::SkyView) -> twin::SkyView {
     match place > 0.0 {
         true => twin::SkyView {
             jump_place: place,
-            // Of distances that have this one at the crossing.
-            level_step: (part - place * place) / (place - place * place),
+            jump_part: part,
             ..view
         },
         false => view,
@@ -278,16 +277,6 @@ impl Eye {
         }
     }
 
-    /// Elevation of a row, and whether it is below the horizon.
-    fn elevation(&self, row: usize, [above, below]: [usize; 2]) -> (f64, bool) {
-        let is_below = row >= above;
-        let place = match is_below {
-            true => (row - above) as f64 / (below - 1) as f64,
-            false => row as f64 / (above - 1) as f64,
-        };
-        (self.coordinates.elevation_rad(place, is_below), is_below)
-    }
-
     /// Unit vector at a place among the columns of a sky table and at an elevation.
     fn direction(&self, column_place: f64, elevation: f64) -> DVec3 {
         let towards = DVec3::new(self.sun.x, 0.0, self.sun.z);
@@ -299,6 +288,14 @@ impl Eye {
         let azimuth = self.coordinates.azimuth(column_place);
         let (sin, cos) = (PI * azimuth).sin_cos();
         (towards * cos + across * sin) * elevation.cos() + DVec3::Y * elevation.sin()
+    }
+}
+
+/// Place from 0 to 1 of a row among those above or below the horizon, and whether it is below.
+fn row_place(row: usize, [above, below]: [usize; 2]) -> (f64, bool) {
+    match row < above {
+        true => (row as f64 / (above - 1) as f64, false),
+        false => ((row - above) as f64 / (below - 1) as f64, true),
     }
 }
 
@@ -327,7 +324,8 @@ fn sky(split: &SplitView, eye: &Eye) -> (Vec<Vec4>, Vec<Vec4>) {
     let [columns, rows, _] = sky_size();
     let mut directions = Vec::with_capacity(columns * rows);
     for row in 0..rows {
-        let (elevation, _) = eye.elevation(row, SKY_ROWS);
+        let (place, is_below) = row_place(row, SKY_ROWS);
+        let elevation = eye.coordinates.elevation_rad(place, is_below);
         let places = (0..columns).map(|column| column as f64 / (columns - 1) as f64);
         directions.extend(places.map(|place| eye.direction(place, elevation)));
     }
@@ -362,7 +360,9 @@ fn aerial(split: &SplitView, eye: &Eye, view: &twin::SkyView) -> Aerial {
     let mut lengths_m = Vec::with_capacity(rows * distances);
     let mut shares = Vec::with_capacity(rows * distances);
     for row in 0..rows {
-        let (elevation, is_below) = eye.elevation(row, AERIAL_ROWS);
+        let (row_place, is_below) = row_place(row, AERIAL_ROWS);
+        let place = twin::row_place_from_aerial(*view, row_place as f32, is_below);
+        let elevation = eye.coordinates.elevation_rad(f64::from(place), is_below);
         let sine = elevation.sin() as f32;
         let span = twin::air_span_m(*view, sine, is_below);
         let start_m = f64::from(span.x);

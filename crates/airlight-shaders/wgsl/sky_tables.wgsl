@@ -12,15 +12,19 @@ const SKY_ROWS_ABOVE: f32 = 125.0;
 /// Rows of a sky table from the horizon to the nadir.
 const SKY_ROWS_BELOW: f32 = 35.0;
 /// Columns of an aerial-perspective table, as those of a sky table but denser beside the sun.
-const AERIAL_AZIMUTHS: f32 = 32.0;
+const AERIAL_AZIMUTHS: f32 = 24.0;
 /// Width of the first of these columns relative to even ones.
-const AERIAL_FIRST_COLUMN: f32 = 0.4;
+const AERIAL_FIRST_COLUMN: f32 = 0.3;
 /// Rows of an aerial-perspective table from the horizon to the highest elevation; they come first.
-const AERIAL_ROWS_ABOVE: f32 = 32.0;
+const AERIAL_ROWS_ABOVE: f32 = 46.0;
 /// Rows of an aerial-perspective table from the horizon to the nadir.
-const AERIAL_ROWS_BELOW: f32 = 32.0;
+const AERIAL_ROWS_BELOW: f32 = 18.0;
+/// Height of the first row above the horizon, or above the rays that graze a jump of density, relative to one of `row_place`.
+const AERIAL_FIRST_ROW: f32 = 0.6;
 /// Distances of an aerial-perspective table.
-const AERIAL_DISTANCES: f32 = 40.0;
+const AERIAL_DISTANCES: f32 = 42.0;
+/// Length behind a jump of density at which these distances are a quarter as dense as just behind it, m.
+const BEHIND_JUMP_M: f32 = 1e5;
 /// Angles of a table of phase functions.
 const PHASE_ANGLES: f32 = 1024.0;
 
@@ -56,8 +60,8 @@ struct SkyView {
     /// Place among the distances of an aerial-perspective table at which rays that do not meet the ground first cross that jump, 0 to 1; 0
     /// without a jump, and for an eye above the air.
     jump_place: f32,
-    /// Length of the first step between the distances of such rays, relative to even steps, from inside the air.
-    level_step: f32,
+    /// Part of the way through the air at which the ray that grazes that jump, or from below the level one, crosses it; 0 if `jump_place` is.
+    jump_part: f32,
     /// Extinction just above that jump relative to that just below it; 1 without a jump.
     extinction_above: vec4<f32>,
     /// Smooth light that a metre of air scatters just above that jump relative to one just below it; 1 without a jump.
@@ -282,8 +286,7 @@ fn share_below_jump(view: SkyView, span_m: vec2<f32>, sin_elevation: f32, length
 }
 
 /// Length of the first step between the distances of a ray with an interval in the air, relative to even steps. From inside the air
-/// distances are dense near the eye, at the square of the place: 0, or a little more where a jump has a place among them; from above it
-/// towards the ground, where most air is, dense there: 2. Steep rays from high in the air are between.
+/// distances are dense near the eye, at the square of the place: 0; from above it towards the ground, where most air is, dense there: 2. Steep rays from high in the air are between.
 ///
 /// Cost: no exp. Error: 1e-5 relative plus 1e-5 absolute.
 fn first_step(view: SkyView, span_m: vec2<f32>, meets_ground: bool) -> f32 {
@@ -291,7 +294,7 @@ fn first_step(view: SkyView, span_m: vec2<f32>, meets_ground: bool) -> f32 {
         return select(1.0, 2.0, meets_ground);
     }
     if !meets_ground {
-        return view.level_step;
+        return 0.0;
     }
     let slant = 1.0 - min(view.height_m / max(span_m.y, 1.0), 1.0);
     let high = min(2.5 * view.height_m / view.air_height_m, 1.0);
@@ -321,8 +324,55 @@ fn aerial_column_place(view: SkyView, azimuth: f32) -> f32 {
     return place_from_part(column_place(view, azimuth), AERIAL_FIRST_COLUMN);
 }
 
-/// Part of the way of a ray through the air at which it first crosses the jump of density nearest to the eye; 0 if it does not cross it, or
-/// meets the ground.
+/// Place among the rows of an aerial-perspective table of the rays that graze a jump of density: that of the nearest row.
+///
+/// Cost: no exp. Error: 1e-6 relative.
+fn aerial_kink_place(view: SkyView) -> f32 {
+    let steps = AERIAL_ROWS_ABOVE - 1.0;
+    return round(view.kink_place * steps) / steps;
+}
+
+/// Place from 0 to 1 among the rows of an aerial-perspective table of the place that an elevation has by `row_place`: that of the rays that
+/// graze a jump of density is at a row, and rows are dense above it.
+///
+/// Cost: no exp. Error: 1e-6 relative plus 1e-5 absolute.
+fn aerial_row_place(view: SkyView, row_place: f32, is_below: bool) -> f32 {
+    if is_below {
+        return row_place;
+    }
+    let kink_place = aerial_kink_place(view);
+    if row_place < view.kink_place {
+        return row_place * kink_place / view.kink_place;
+    }
+    return mix(kink_place, 1.0, place_from_part((row_place - view.kink_place) / (1.0 - view.kink_place), AERIAL_FIRST_ROW));
+}
+
+/// Inverse of `aerial_row_place`: place by `row_place`.
+///
+/// Cost: no exp. Error: 1e-6 relative plus 2e-6 absolute.
+fn row_place_from_aerial(view: SkyView, place: f32, is_below: bool) -> f32 {
+    if is_below {
+        return place;
+    }
+    let kink_place = aerial_kink_place(view);
+    if place < kink_place {
+        return place * view.kink_place / kink_place;
+    }
+    return mix(view.kink_place, 1.0, part_from_place((place - kink_place) / (1.0 - kink_place), AERIAL_FIRST_ROW));
+}
+
+/// Texture coordinate of an elevation in an aerial-perspective table.
+///
+/// Cost: no exp. Error: 2e-6 relative plus 1e-4 absolute.
+fn aerial_row_coordinate(view: SkyView, elevation_rad: f32, is_below: bool) -> f32 {
+    let place = aerial_row_place(view, row_place(view, elevation_rad, is_below), is_below);
+    let rows = select(AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW, is_below);
+    let first = select(0.0, AERIAL_ROWS_ABOVE, is_below);
+    return (first + 0.5 + place * (rows - 1.0)) / (AERIAL_ROWS_ABOVE + AERIAL_ROWS_BELOW);
+}
+
+/// Part of the way of a ray through the air at which it first crosses the jump of density nearest to the eye, or if it does not, at which
+/// the ray that grazes the jump does; 0 if the ray meets the ground.
 ///
 /// Cost: no exp. Error: 1e-3 absolute.
 fn part_at_jump(view: SkyView, span_m: vec2<f32>, sin_elevation: f32, meets_ground: bool) -> f32 {
@@ -330,21 +380,27 @@ fn part_at_jump(view: SkyView, span_m: vec2<f32>, sin_elevation: f32, meets_grou
         return 0.0;
     }
     let below = below_jump_m(view, span_m, sin_elevation, meets_ground);
+    if below.y == 0.0 {
+        return view.jump_part;
+    }
     let crossing = select(below.y, below.x, below.x > span_m.x);
     return clamp((crossing - span_m.x) / max(span_m.y - span_m.x, 1e-6), 0.0, 1.0);
 }
 
-/// Lengths of the first steps between the distances before and behind a jump, as `first_step`, for which the step does not change there
-/// along the ray that grazes the jump, or from below along the level one.
+/// Place from 0 to 1 of a part of the way behind a jump of density, of a length (m), among the distances there: dense behind the jump.
 ///
 /// Cost: no exp. Error: 1e-6 relative.
-fn steps_at_jump(view: SkyView) -> vec2<f32> {
-    let growth = 1.0 - view.level_step;
-    let at_jump = view.level_step + 2.0 * growth * view.jump_place;
-    return vec2<f32>(
-        view.level_step / (view.level_step + growth * view.jump_place),
-        at_jump / (at_jump + growth * (1.0 - view.jump_place)),
-    );
+fn place_behind_jump(part: f32, length_m: f32) -> f32 {
+    let length = length_m / BEHIND_JUMP_M;
+    return part * (1.0 + length) / (1.0 + part * length);
+}
+
+/// Inverse of `place_behind_jump`.
+///
+/// Cost: no exp. Error: 3e-6 relative plus 1e-9 absolute.
+fn part_behind_jump(place: f32, length_m: f32) -> f32 {
+    let length = length_m / BEHIND_JUMP_M;
+    return place / (1.0 + (1.0 - place) * length);
 }
 
 /// Place from 0 to 1 of a length in the air among the distances of a ray with an interval in the air. Where rays cross a jump of density,
@@ -357,12 +413,12 @@ fn distance_place(view: SkyView, span_m: vec2<f32>, sin_elevation: f32, length_m
     if at_jump == 0.0 {
         return place_from_part(part, first_step(view, span_m, meets_ground));
     }
-    let steps = steps_at_jump(view);
     if part < at_jump {
-        return view.jump_place * place_from_part(part / at_jump, steps.x);
+        return view.jump_place * sqrt(part / at_jump);
     }
     let behind = clamp((part - at_jump) / max(1.0 - at_jump, 1e-6), 0.0, 1.0);
-    return mix(view.jump_place, 1.0, place_from_part(behind, steps.y));
+    let behind_m = (1.0 - at_jump) * (span_m.y - span_m.x);
+    return mix(view.jump_place, 1.0, place_behind_jump(behind, behind_m));
 }
 
 /// Inverse of `distance_place`: length in the air, m.
@@ -372,9 +428,10 @@ fn length_from_distance_place(view: SkyView, span_m: vec2<f32>, sin_elevation: f
     let at_jump = part_at_jump(view, span_m, sin_elevation, meets_ground);
     var part = part_from_place(place, first_step(view, span_m, meets_ground));
     if at_jump > 0.0 && place < view.jump_place {
-        part = at_jump * part_from_place(place / view.jump_place, steps_at_jump(view).x);
+        part = at_jump * (place / view.jump_place) * (place / view.jump_place);
     } else if at_jump > 0.0 {
-        part = mix(at_jump, 1.0, part_from_place((place - view.jump_place) / (1.0 - view.jump_place), steps_at_jump(view).y));
+        let behind_m = (1.0 - at_jump) * (span_m.y - span_m.x);
+        part = mix(at_jump, 1.0, part_behind_jump((place - view.jump_place) / (1.0 - view.jump_place), behind_m));
     }
     return part * (span_m.y - span_m.x);
 }
@@ -450,7 +507,7 @@ fn aerial_perspective(
     let share = share_below_jump(view, span, direction.y, length_m, is_below);
     let extinction = mix(view.extinction_above, vec4<f32>(1.0), share);
     let place = distance_place(view, span, direction.y, length_m, is_below);
-    let row = row_coordinate(view, elevation_rad, is_below, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    let row = aerial_row_coordinate(view, elevation_rad, is_below);
     let uvw = vec3<f32>(
         texel_coordinate(aerial_column_place(view, azimuth_place(direction, view.sun)), AERIAL_AZIMUTHS),
         row,
@@ -487,7 +544,7 @@ fn aerial_transmittance(
     let share = share_below_jump(view, span, direction.y, length_m, is_below);
     let extinction = mix(view.extinction_above, vec4<f32>(1.0), share);
     let place = distance_place(view, span, direction.y, length_m, is_below);
-    let row = row_coordinate(view, elevation_rad, is_below, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    let row = aerial_row_coordinate(view, elevation_rad, is_below);
     let uv = vec2<f32>(texel_coordinate(place, AERIAL_DISTANCES), row);
     return exp(textureSampleLevel(extinction_table, linear_sampler, uv, 0.0) * extinction * (length_m * -1e-3));
 }

@@ -120,7 +120,7 @@ structs! {
         disc_weights
     }
     SkyView { sun, height_m, ground_radius_m, air_height_m, horizon_rad, highest_rad, kink_rad, kink_place,
-        dense_share, dense_azimuth, dense_width, even_below, jump_height_m, jump_place, level_step, extinction_above, smooth_above, haze_above }
+        dense_share, dense_azimuth, dense_width, even_below, jump_height_m, jump_place, jump_part, extinction_above, smooth_above, haze_above }
     SkyScales { smooth_light, haze }
     RgbWeights { red, green, blue }
     FogFrame { tables, layers, eye_height_m, around_lights }

@@ -115,7 +115,7 @@ struct SkyView {
     float even_below;
     float jump_height_m;
     float jump_place;
-    float level_step;
+    float jump_part;
     vec4 extinction_above;
     vec4 smooth_above;
     vec4 haze_above;
@@ -169,11 +169,13 @@ const float LIGHT_CUTOFF = 12.667;
 const float SKY_AZIMUTHS = 64.0;
 const float SKY_ROWS_ABOVE = 125.0;
 const float SKY_ROWS_BELOW = 35.0;
-const float AERIAL_AZIMUTHS = 32.0;
-const float AERIAL_FIRST_COLUMN = 0.4;
-const float AERIAL_ROWS_ABOVE = 32.0;
-const float AERIAL_ROWS_BELOW = 32.0;
-const float AERIAL_DISTANCES = 40.0;
+const float AERIAL_AZIMUTHS = 24.0;
+const float AERIAL_FIRST_COLUMN = 0.3;
+const float AERIAL_ROWS_ABOVE = 46.0;
+const float AERIAL_ROWS_BELOW = 18.0;
+const float AERIAL_FIRST_ROW = 0.6;
+const float AERIAL_DISTANCES = 42.0;
+const float BEHIND_JUMP_M = 100000.0;
 const float PHASE_ANGLES = 1024.0;
 const float FOG_AZIMUTHS = 32.0;
 const float FOG_ROWS = 64.0;
@@ -1334,9 +1336,9 @@ vec2 lit_interval(LightRay ray_14, float cos_angle) {
     bool local_13 = false;
     float to_m_4 = INFINITE_M;
     bool local_14 = false;
-    float length_m_16 = ray_14.geometry.length_m;
+    float length_m_18 = ray_14.geometry.length_m;
     if ((ray_14.light.kind != LIGHT_SPOT)) {
-        return vec2(0.0, length_m_16);
+        return vec2(0.0, length_m_18);
     }
     float h_3 = ray_14.geometry.nearest_m;
     float across = (ray_14.across_m / h_3);
@@ -1377,7 +1379,7 @@ vec2 lit_interval(LightRay ray_14, float cos_angle) {
     }
     float _e94 = from_m_4;
     float _e95 = to_m_4;
-    vec2 interval = clamp((vec2(_e94, _e95) - vec2(ray_14.geometry.start_m)), vec2(0.0), vec2(length_m_16));
+    vec2 interval = clamp((vec2(_e94, _e95) - vec2(ray_14.geometry.start_m)), vec2(0.0), vec2(length_m_18));
     return ((interval.y > interval.x) ? interval : vec2(0.0));
 }
 
@@ -1391,8 +1393,8 @@ vec3 light_at(LightRay ray_15, float place_m_2) {
     if ((ray_15.light.kind == LIGHT_SPOT)) {
         float cos_angle_3 = ((ray_15.across_m + (place_m_2 * ray_15.along)) / _e4);
         float range = max((ray_15.light.cos_inner - ray_15.light.cos_outer), 1e-6);
-        float part_2 = clamp(((cos_angle_3 - ray_15.light.cos_outer) / range), 0.0, 1.0);
-        return vec3((part_2 * part_2), _e4, one_minus_cos_10);
+        float part_3 = clamp(((cos_angle_3 - ray_15.light.cos_outer) / range), 0.0, 1.0);
+        return vec3((part_3 * part_3), _e4, one_minus_cos_10);
     }
     if ((ray_15.light.kind == LIGHT_SPHERE)) {
         float radius_m_4 = ray_15.light.radius_m;
@@ -1600,8 +1602,8 @@ vec3 light_panel_in_exponential_fog(ExponentialFog fog_4, float eye_height_m_1, 
             float _e151 = forward;
             float t_3 = max((_e150 + (((_e151 * 0.5) * _e147.x) * ((_e147.x + (2.0 * _e119)) / s_1))), 0.0);
             float _e165 = forward;
-            float place_9 = (((_e165 * 0.5) * (s_1 - h_6)) * ((s_1 + h_6) / s_1));
-            vec3 _e173 = light_at(ray_17, place_9);
+            float place_11 = (((_e165 * 0.5) * (s_1 - h_6)) * ((s_1 + h_6) / s_1));
+            vec3 _e173 = light_at(ray_17, place_11);
             float centre_m_1 = ((ray_17.light.kind == LIGHT_SPHERE) ? (_e173.y + ray_17.light.radius_m) : _e173.y);
             float _e185 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_8, t_3, light_height_m_1, centre_m_1, _e173.y);
             float _e192 = decayed((((eye_height_m_1 + (sin_elevation_8 * t_3)) - fog_4.reference_height_m) / fog_4.scale_height_m));
@@ -1871,16 +1873,16 @@ float azimuth_from_column_place(SkyView view_1, float place_2) {
 // Cost: no exp.
 float row_place(SkyView view_2, float elevation_rad, bool is_below) {
     if (is_below) {
-        float part_3 = ((elevation_rad - view_2.horizon_rad) / (-1.5707964 - view_2.horizon_rad));
-        float root_2 = sqrt(sqrt(clamp(part_3, 0.0, 1.0)));
+        float part_4 = ((elevation_rad - view_2.horizon_rad) / (-1.5707964 - view_2.horizon_rad));
+        float root_2 = sqrt(sqrt(clamp(part_4, 0.0, 1.0)));
         return (root_2 * ((1.0 - view_2.even_below) + (view_2.even_below * root_2)));
     }
     if ((elevation_rad < view_2.kink_rad)) {
-        float part_4 = clamp(((elevation_rad - view_2.horizon_rad) / (view_2.kink_rad - view_2.horizon_rad)), 0.0, 1.0);
-        return ((view_2.kink_place * 0.63661975) * atan(sqrt(part_4), sqrt((1.0 - part_4))));
+        float part_5 = clamp(((elevation_rad - view_2.horizon_rad) / (view_2.kink_rad - view_2.horizon_rad)), 0.0, 1.0);
+        return ((view_2.kink_place * 0.63661975) * atan(sqrt(part_5), sqrt((1.0 - part_5))));
     }
-    float part_5 = clamp(((elevation_rad - view_2.kink_rad) / (view_2.highest_rad - view_2.kink_rad)), 0.0, 1.0);
-    return (view_2.kink_place + ((1.0 - view_2.kink_place) * sqrt(part_5)));
+    float part_6 = clamp(((elevation_rad - view_2.kink_rad) / (view_2.highest_rad - view_2.kink_rad)), 0.0, 1.0);
+    return (view_2.kink_place + ((1.0 - view_2.kink_place) * sqrt(part_6)));
 }
 
 // Inverse of `row_place`: elevation of a place, rad.
@@ -1896,8 +1898,8 @@ float elevation_from_row_place(SkyView view_3, float place_3, bool is_below_1) {
         float sine_6 = sin(((1.5707964 * place_3) / view_3.kink_place));
         return (view_3.horizon_rad + (((view_3.kink_rad - view_3.horizon_rad) * sine_6) * sine_6));
     }
-    float part_6 = ((place_3 - view_3.kink_place) / (1.0 - view_3.kink_place));
-    return (view_3.kink_rad + (((view_3.highest_rad - view_3.kink_rad) * part_6) * part_6));
+    float part_7 = ((place_3 - view_3.kink_place) / (1.0 - view_3.kink_place));
+    return (view_3.kink_rad + (((view_3.highest_rad - view_3.kink_rad) * part_7) * part_7));
 }
 
 // Texture coordinate of an elevation in a table with rows above and below the horizon, at their `row_place`. The first rows hold the elevations from the horizon on; both parts end in texel centres, so that filtering does not mix them.
@@ -1913,10 +1915,10 @@ float row_coordinate(SkyView view_4, float elevation_rad_1, bool is_below_2, flo
 // Cost: no exp.
 float elevation_from_row_coordinate(SkyView view_5, float coordinate_1, float rows_above_1, float rows_below_1) {
     float row_2 = (coordinate_1 * (rows_above_1 + rows_below_1));
-    bool is_below_3 = (row_2 >= rows_above_1);
-    float rows_1 = (is_below_3 ? rows_below_1 : rows_above_1);
-    float place_10 = (((row_2 - (is_below_3 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0));
-    float _e16 = elevation_from_row_place(view_5, place_10, is_below_3);
+    bool is_below_6 = (row_2 >= rows_above_1);
+    float rows_1 = (is_below_6 ? rows_below_1 : rows_above_1);
+    float place_12 = (((row_2 - (is_below_6 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0));
+    float _e16 = elevation_from_row_place(view_5, place_12, is_below_6);
     return _e16;
 }
 
@@ -1930,11 +1932,11 @@ float elevation_of(vec3 direction_6) {
 // Cost: no exp.
 vec2 uv_from_direction(SkyView view_6, vec3 direction_7) {
     float _e2 = elevation_of(direction_7);
-    bool is_below_4 = (_e2 < view_6.horizon_rad);
+    bool is_below_7 = (_e2 < view_6.horizon_rad);
     float _e6 = azimuth_place(direction_7, view_6.sun);
     float _e7 = column_place(view_6, _e6);
     float _e9 = texel_coordinate(_e7, SKY_AZIMUTHS);
-    float _e12 = row_coordinate(view_6, _e2, is_below_4, SKY_ROWS_ABOVE, SKY_ROWS_BELOW);
+    float _e12 = row_coordinate(view_6, _e2, is_below_7, SKY_ROWS_ABOVE, SKY_ROWS_BELOW);
     return vec2(_e9, _e12);
 }
 
@@ -2015,14 +2017,14 @@ float share_below_jump(SkyView view_10, vec2 span_m_1, float sin_elevation_11, f
     return clamp((below_m_1 / max(length_m_14, 1e-6)), 0.0, 1.0);
 }
 
-// Length of the first step between the distances of a ray with an interval in the air, relative to even steps. From inside the air distances are dense near the eye, at the square of the place: 0, or a little more where a jump has a place among them; from above it towards the ground, where most air is, dense there: 2. Steep rays from high in the air are between.
+// Length of the first step between the distances of a ray with an interval in the air, relative to even steps. From inside the air distances are dense near the eye, at the square of the place: 0; from above it towards the ground, where most air is, dense there: 2. Steep rays from high in the air are between.
 // Cost: no exp.
 float first_step(SkyView view_11, vec2 span_m_2, bool meets_ground_3) {
     if ((view_11.height_m >= view_11.air_height_m)) {
         return (meets_ground_3 ? 2.0 : 1.0);
     }
     if (!(meets_ground_3)) {
-        return view_11.level_step;
+        return 0.0;
     }
     float slant = (1.0 - min((view_11.height_m / max(span_m_2.y, 1.0)), 1.0));
     float high = min(((2.5 * view_11.height_m) / view_11.air_height_m), 1.0);
@@ -2051,11 +2053,55 @@ float aerial_column_place(SkyView view_12, float azimuth_2) {
     return _e4;
 }
 
-// Part of the way of a ray through the air at which it first crosses the jump of density nearest to the eye; 0 if it does not cross it, or meets the ground.
+// Place among the rows of an aerial-perspective table of the rays that graze a jump of density: that of the nearest row.
 // Cost: no exp.
-float part_at_jump(SkyView view_13, vec2 span_m_3, float sin_elevation_12, bool meets_ground_4) {
+float aerial_kink_place(SkyView view_13) {
+    return (roundEven((view_13.kink_place * 45.0)) / 45.0);
+}
+
+// Place from 0 to 1 among the rows of an aerial-perspective table of the place that an elevation has by `row_place`: that of the rays that graze a jump of density is at a row, and rows are dense above it.
+// Cost: no exp.
+float aerial_row_place(SkyView view_14, float row_place_1, bool is_below_3) {
+    if (is_below_3) {
+        return row_place_1;
+    }
+    float _e3 = aerial_kink_place(view_14);
+    if ((row_place_1 < view_14.kink_place)) {
+        return ((row_place_1 * _e3) / view_14.kink_place);
+    }
+    float _e16 = place_from_part(((row_place_1 - view_14.kink_place) / (1.0 - view_14.kink_place)), AERIAL_FIRST_ROW);
+    return mix(_e3, 1.0, _e16);
+}
+
+// Inverse of `aerial_row_place`: place by `row_place`.
+// Cost: no exp.
+float row_place_from_aerial(SkyView view_15, float place_5, bool is_below_4) {
+    if (is_below_4) {
+        return place_5;
+    }
+    float _e3 = aerial_kink_place(view_15);
+    if ((place_5 < _e3)) {
+        return ((place_5 * view_15.kink_place) / _e3);
+    }
+    float _e14 = part_from_place(((place_5 - _e3) / (1.0 - _e3)), AERIAL_FIRST_ROW);
+    return mix(view_15.kink_place, 1.0, _e14);
+}
+
+// Texture coordinate of an elevation in an aerial-perspective table.
+// Cost: no exp.
+float aerial_row_coordinate(SkyView view_16, float elevation_rad_3, bool is_below_5) {
+    float _e3 = row_place(view_16, elevation_rad_3, is_below_5);
+    float _e4 = aerial_row_place(view_16, _e3, is_below_5);
+    float rows_2 = (is_below_5 ? AERIAL_ROWS_BELOW : AERIAL_ROWS_ABOVE);
+    float first_3 = (is_below_5 ? AERIAL_ROWS_ABOVE : 0.0);
+    return (((first_3 + 0.5) + (_e4 * (rows_2 - 1.0))) / 64.0);
+}
+
+// Part of the way of a ray through the air at which it first crosses the jump of density nearest to the eye, or if it does not, at which the ray that grazes the jump does; 0 if the ray meets the ground.
+// Cost: no exp.
+float part_at_jump(SkyView view_17, vec2 span_m_3, float sin_elevation_12, bool meets_ground_4) {
     bool local_19 = false;
-    if (!((view_13.jump_place == 0.0))) {
+    if (!((view_17.jump_place == 0.0))) {
         local_19 = meets_ground_4;
     } else {
         local_19 = true;
@@ -2064,67 +2110,73 @@ float part_at_jump(SkyView view_13, vec2 span_m_3, float sin_elevation_12, bool 
     if (_e11) {
         return 0.0;
     }
-    vec2 _e13 = below_jump_m(view_13, span_m_3, sin_elevation_12, meets_ground_4);
+    vec2 _e13 = below_jump_m(view_17, span_m_3, sin_elevation_12, meets_ground_4);
+    if ((_e13.y == 0.0)) {
+        return view_17.jump_part;
+    }
     float crossing = ((_e13.x > span_m_3.x) ? _e13.x : _e13.y);
     return clamp(((crossing - span_m_3.x) / max((span_m_3.y - span_m_3.x), 1e-6)), 0.0, 1.0);
 }
 
-// Lengths of the first steps between the distances before and behind a jump, as `first_step`, for which the step does not change there along the ray that grazes the jump, or from below along the level one.
+// Place from 0 to 1 of a part of the way behind a jump of density, of a length (m), among the distances there: dense behind the jump.
 // Cost: no exp.
-vec2 steps_at_jump(SkyView view_14) {
-    float growth = (1.0 - view_14.level_step);
-    float at_jump = (view_14.level_step + ((2.0 * growth) * view_14.jump_place));
-    return vec2((view_14.level_step / (view_14.level_step + (growth * view_14.jump_place))), (at_jump / (at_jump + (growth * (1.0 - view_14.jump_place)))));
+float place_behind_jump(float part_1, float length_m_15) {
+    float length_1 = (length_m_15 / BEHIND_JUMP_M);
+    return ((part_1 * (1.0 + length_1)) / (1.0 + (part_1 * length_1)));
+}
+
+// Inverse of `place_behind_jump`.
+// Cost: no exp.
+float part_behind_jump(float place_6, float length_m_16) {
+    float length_2 = (length_m_16 / BEHIND_JUMP_M);
+    return (place_6 / (1.0 + ((1.0 - place_6) * length_2)));
 }
 
 // Place from 0 to 1 of a length in the air among the distances of a ray with an interval in the air. Where rays cross a jump of density, so does a distance of the table, as light and extinction bend there.
 // Cost: no exp.
-float distance_place(SkyView view_15, vec2 span_m_4, float sin_elevation_13, float length_m_15, bool meets_ground_5) {
-    float part_7 = clamp((length_m_15 / max((span_m_4.y - span_m_4.x), 1e-6)), 0.0, 1.0);
-    float _e14 = part_at_jump(view_15, span_m_4, sin_elevation_13, meets_ground_5);
+float distance_place(SkyView view_18, vec2 span_m_4, float sin_elevation_13, float length_m_17, bool meets_ground_5) {
+    float part_8 = clamp((length_m_17 / max((span_m_4.y - span_m_4.x), 1e-6)), 0.0, 1.0);
+    float _e14 = part_at_jump(view_18, span_m_4, sin_elevation_13, meets_ground_5);
     if ((_e14 == 0.0)) {
-        float _e17 = first_step(view_15, span_m_4, meets_ground_5);
-        float _e18 = place_from_part(part_7, _e17);
+        float _e17 = first_step(view_18, span_m_4, meets_ground_5);
+        float _e18 = place_from_part(part_8, _e17);
         return _e18;
     }
-    vec2 _e19 = steps_at_jump(view_15);
-    if ((part_7 < _e14)) {
-        float _e24 = place_from_part((part_7 / _e14), _e19.x);
-        return (view_15.jump_place * _e24);
+    if ((part_8 < _e14)) {
+        return (view_18.jump_place * sqrt((part_8 / _e14)));
     }
-    float behind = clamp(((part_7 - _e14) / max((1.0 - _e14), 1e-6)), 0.0, 1.0);
-    float _e37 = place_from_part(behind, _e19.y);
-    return mix(view_15.jump_place, 1.0, _e37);
+    float behind = clamp(((part_8 - _e14) / max((1.0 - _e14), 1e-6)), 0.0, 1.0);
+    float behind_m = ((1.0 - _e14) * (span_m_4.y - span_m_4.x));
+    float _e40 = place_behind_jump(behind, behind_m);
+    return mix(view_18.jump_place, 1.0, _e40);
 }
 
 // Inverse of `distance_place`: length in the air, m.
 // Cost: no exp.
-float length_from_distance_place(SkyView view_16, vec2 span_m_5, float sin_elevation_14, float place_5, bool meets_ground_6) {
-    float part_1 = 0.0;
+float length_from_distance_place(SkyView view_19, vec2 span_m_5, float sin_elevation_14, float place_7, bool meets_ground_6) {
+    float part_2 = 0.0;
     bool local_20 = false;
-    float _e5 = part_at_jump(view_16, span_m_5, sin_elevation_14, meets_ground_6);
-    float _e6 = first_step(view_16, span_m_5, meets_ground_6);
-    float _e7 = part_from_place(place_5, _e6);
-    part_1 = _e7;
+    float _e5 = part_at_jump(view_19, span_m_5, sin_elevation_14, meets_ground_6);
+    float _e6 = first_step(view_19, span_m_5, meets_ground_6);
+    float _e7 = part_from_place(place_7, _e6);
+    part_2 = _e7;
     if ((_e5 > 0.0)) {
-        local_20 = (place_5 < view_16.jump_place);
+        local_20 = (place_7 < view_19.jump_place);
     } else {
         local_20 = false;
     }
     bool _e16 = local_20;
     if (_e16) {
-        vec2 _e19 = steps_at_jump(view_16);
-        float _e21 = part_from_place((place_5 / view_16.jump_place), _e19.x);
-        part_1 = (_e5 * _e21);
+        part_2 = ((_e5 * (place_7 / view_19.jump_place)) * (place_7 / view_19.jump_place));
     } else {
         if ((_e5 > 0.0)) {
-            vec2 _e31 = steps_at_jump(view_16);
-            float _e33 = part_from_place(((place_5 - view_16.jump_place) / (1.0 - view_16.jump_place)), _e31.y);
-            part_1 = mix(_e5, 1.0, _e33);
+            float behind_m_1 = ((1.0 - _e5) * (span_m_5.y - span_m_5.x));
+            float _e37 = part_behind_jump(((place_7 - view_19.jump_place) / (1.0 - view_19.jump_place)), behind_m_1);
+            part_2 = mix(_e5, 1.0, _e37);
         }
     }
-    float _e36 = part_1;
-    return (_e36 * (span_m_5.y - span_m_5.x));
+    float _e40 = part_2;
+    return (_e40 * (span_m_5.y - span_m_5.x));
 }
 
 // Place from 0 to 1 of a scattering angle in a table of phase functions, dense forwards, by 1 minus the cosine.
@@ -2136,8 +2188,8 @@ float phase_place(float one_minus_cos_6) {
 
 // Inverse of `phase_place`.
 // Cost: no exp.
-float one_minus_cos_from_phase_place(float place_6) {
-    float half_sine = sin(((1.5707964 * place_6) * place_6));
+float one_minus_cos_from_phase_place(float place_8) {
+    float half_sine = sin(((1.5707964 * place_8) * place_8));
     return ((2.0 * half_sine) * half_sine);
 }
 
@@ -2152,13 +2204,13 @@ vec4 haze_phase(highp sampler2D phase_table, float one_minus_cos_7) {
 
 // Radiance of the sky, or of the ground below the horizon, along a direction at four wavelengths, without the sun's disc.
 // Cost: 8 exp, 3 reads.
-vec4 sky_radiance(SkyView view_17, SkyScales scales, highp sampler2D smooth_table, highp sampler2D haze_table, highp sampler2D phase_table_1, vec3 direction_8) {
+vec4 sky_radiance(SkyView view_20, SkyScales scales, highp sampler2D smooth_table, highp sampler2D haze_table, highp sampler2D phase_table_1, vec3 direction_8) {
     float _e7 = elevation_of(direction_8);
-    if ((_e7 > view_17.highest_rad)) {
+    if ((_e7 > view_20.highest_rad)) {
         return vec4(0.0);
     }
-    vec2 _e12 = uv_from_direction(view_17, direction_8);
-    float _e14 = one_minus_cos_between(direction_8, view_17.sun);
+    vec2 _e12 = uv_from_direction(view_20, direction_8);
+    float _e14 = one_minus_cos_between(direction_8, view_20.sun);
     vec4 _e15 = haze_phase(phase_table_1, _e14);
     vec4 _e17 = textureLod(smooth_table, vec2(_e12), 0.0);
     vec4 smooth_light_1 = (exp(_e17) * scales.smooth_light);
@@ -2169,16 +2221,16 @@ vec4 sky_radiance(SkyView view_17, SkyScales scales, highp sampler2D smooth_tabl
 
 // Air between the eye and a point at a distance along a direction, at four wavelengths. The extinction table holds the mean extinction from the first air on, 1/km, as if all of it were below the jump of density nearest to the eye.
 // Cost: 12 exp, 4 reads.
-SpectralPath aerial_perspective(SkyView view_18, SkyScales scales_1, highp sampler3D smooth_table_1, highp sampler3D haze_table_1, highp sampler2D extinction_table, highp sampler2D phase_table_2, vec3 direction_9, float distance_m_1) {
+SpectralPath aerial_perspective(SkyView view_21, SkyScales scales_1, highp sampler3D smooth_table_1, highp sampler3D haze_table_1, highp sampler2D extinction_table, highp sampler2D phase_table_2, vec3 direction_9, float distance_m_1) {
     bool local_21 = false;
     vec4 smooth_light = vec4(0.0);
     vec4 haze = vec4(0.0);
     float _e9 = elevation_of(direction_9);
-    bool is_below_5 = (_e9 < view_18.horizon_rad);
-    vec2 _e13 = air_span_m(view_18, direction_9.y, is_below_5);
-    float length_m_17 = (min(distance_m_1, _e13.y) - _e13.x);
-    if (!((length_m_17 <= 0.0))) {
-        local_21 = (_e9 > view_18.highest_rad);
+    bool is_below_8 = (_e9 < view_21.horizon_rad);
+    vec2 _e13 = air_span_m(view_21, direction_9.y, is_below_8);
+    float length_m_19 = (min(distance_m_1, _e13.y) - _e13.x);
+    if (!((length_m_19 <= 0.0))) {
+        local_21 = (_e9 > view_21.highest_rad);
     } else {
         local_21 = true;
     }
@@ -2186,45 +2238,45 @@ SpectralPath aerial_perspective(SkyView view_18, SkyScales scales_1, highp sampl
     if (_e26) {
         return SpectralPath(vec4(1.0), vec4(0.0));
     }
-    float _e33 = share_below_jump(view_18, _e13, direction_9.y, length_m_17, is_below_5);
-    vec4 extinction_2 = mix(view_18.extinction_above, vec4(1.0), _e33);
-    float _e39 = distance_place(view_18, _e13, direction_9.y, length_m_17, is_below_5);
-    float _e42 = row_coordinate(view_18, _e9, is_below_5, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
-    float _e44 = azimuth_place(direction_9, view_18.sun);
-    float _e45 = aerial_column_place(view_18, _e44);
-    float _e47 = texel_coordinate(_e45, AERIAL_AZIMUTHS);
-    float _e49 = texel_coordinate(_e39, AERIAL_DISTANCES);
-    vec3 uvw = vec3(_e47, _e42, _e49);
-    float _e52 = one_minus_cos_between(direction_9, view_18.sun);
-    vec4 _e53 = haze_phase(phase_table_2, _e52);
-    vec4 _e56 = textureLod(extinction_table, vec2(uvw.zy), 0.0);
-    vec4 depth_5 = ((_e56 * extinction_2) * (length_m_17 * 0.001));
-    vec4 _e62 = textureLod(smooth_table_1, vec3(uvw), 0.0);
-    smooth_light = (exp(_e62) * scales_1.smooth_light);
-    vec4 _e68 = textureLod(haze_table_1, vec3(uvw), 0.0);
-    haze = (exp(_e68) * scales_1.haze);
-    vec4 _e73 = smooth_light;
-    smooth_light = (_e73 * mix(view_18.smooth_above, vec4(1.0), _e33));
-    vec4 _e79 = haze;
-    haze = (_e79 * mix(view_18.haze_above, vec4(1.0), _e33));
-    vec3 _e86 = mean_transmittance_rgb(depth_5.xyz);
-    float _e88 = mean_transmittance(depth_5.w);
-    vec4 opacity_2 = (depth_5 * vec4(_e86, _e88));
-    vec4 _e94 = smooth_light;
-    vec4 _e95 = haze;
-    return SpectralPath((vec4(1.0) - opacity_2), (((_e94 + (_e95 * _e53)) / extinction_2) * opacity_2));
+    float _e33 = share_below_jump(view_21, _e13, direction_9.y, length_m_19, is_below_8);
+    vec4 extinction_2 = mix(view_21.extinction_above, vec4(1.0), _e33);
+    float _e39 = distance_place(view_21, _e13, direction_9.y, length_m_19, is_below_8);
+    float _e40 = aerial_row_coordinate(view_21, _e9, is_below_8);
+    float _e42 = azimuth_place(direction_9, view_21.sun);
+    float _e43 = aerial_column_place(view_21, _e42);
+    float _e45 = texel_coordinate(_e43, AERIAL_AZIMUTHS);
+    float _e47 = texel_coordinate(_e39, AERIAL_DISTANCES);
+    vec3 uvw = vec3(_e45, _e40, _e47);
+    float _e50 = one_minus_cos_between(direction_9, view_21.sun);
+    vec4 _e51 = haze_phase(phase_table_2, _e50);
+    vec4 _e54 = textureLod(extinction_table, vec2(uvw.zy), 0.0);
+    vec4 depth_5 = ((_e54 * extinction_2) * (length_m_19 * 0.001));
+    vec4 _e60 = textureLod(smooth_table_1, vec3(uvw), 0.0);
+    smooth_light = (exp(_e60) * scales_1.smooth_light);
+    vec4 _e66 = textureLod(haze_table_1, vec3(uvw), 0.0);
+    haze = (exp(_e66) * scales_1.haze);
+    vec4 _e71 = smooth_light;
+    smooth_light = (_e71 * mix(view_21.smooth_above, vec4(1.0), _e33));
+    vec4 _e77 = haze;
+    haze = (_e77 * mix(view_21.haze_above, vec4(1.0), _e33));
+    vec3 _e84 = mean_transmittance_rgb(depth_5.xyz);
+    float _e86 = mean_transmittance(depth_5.w);
+    vec4 opacity_2 = (depth_5 * vec4(_e84, _e86));
+    vec4 _e92 = smooth_light;
+    vec4 _e93 = haze;
+    return SpectralPath((vec4(1.0) - opacity_2), (((_e92 + (_e93 * _e51)) / extinction_2) * opacity_2));
 }
 
 // Transmittance of the air between the eye and a point at a distance along a direction, at four wavelengths: that of `aerial_perspective` alone.
 // Cost: 4 exp, 1 read.
-vec4 aerial_transmittance(SkyView view_19, highp sampler2D extinction_table_1, vec3 direction_10, float distance_m_2) {
+vec4 aerial_transmittance(SkyView view_22, highp sampler2D extinction_table_1, vec3 direction_10, float distance_m_2) {
     bool local_22 = false;
     float _e5 = elevation_of(direction_10);
-    bool is_below_6 = (_e5 < view_19.horizon_rad);
-    vec2 _e9 = air_span_m(view_19, direction_10.y, is_below_6);
-    float length_m_18 = (min(distance_m_2, _e9.y) - _e9.x);
-    if (!((length_m_18 <= 0.0))) {
-        local_22 = (_e5 > view_19.highest_rad);
+    bool is_below_9 = (_e5 < view_22.horizon_rad);
+    vec2 _e9 = air_span_m(view_22, direction_10.y, is_below_9);
+    float length_m_20 = (min(distance_m_2, _e9.y) - _e9.x);
+    if (!((length_m_20 <= 0.0))) {
+        local_22 = (_e5 > view_22.highest_rad);
     } else {
         local_22 = true;
     }
@@ -2232,14 +2284,14 @@ vec4 aerial_transmittance(SkyView view_19, highp sampler2D extinction_table_1, v
     if (_e22) {
         return vec4(1.0);
     }
-    float _e26 = share_below_jump(view_19, _e9, direction_10.y, length_m_18, is_below_6);
-    vec4 extinction_3 = mix(view_19.extinction_above, vec4(1.0), _e26);
-    float _e32 = distance_place(view_19, _e9, direction_10.y, length_m_18, is_below_6);
-    float _e35 = row_coordinate(view_19, _e5, is_below_6, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
-    float _e37 = texel_coordinate(_e32, AERIAL_DISTANCES);
-    vec2 uv = vec2(_e37, _e35);
-    vec4 _e40 = textureLod(extinction_table_1, vec2(uv), 0.0);
-    return exp(((_e40 * extinction_3) * (length_m_18 * -0.001)));
+    float _e26 = share_below_jump(view_22, _e9, direction_10.y, length_m_20, is_below_9);
+    vec4 extinction_3 = mix(view_22.extinction_above, vec4(1.0), _e26);
+    float _e32 = distance_place(view_22, _e9, direction_10.y, length_m_20, is_below_9);
+    float _e33 = aerial_row_coordinate(view_22, _e5, is_below_9);
+    float _e35 = texel_coordinate(_e32, AERIAL_DISTANCES);
+    vec2 uv = vec2(_e35, _e33);
+    vec4 _e38 = textureLod(extinction_table_1, vec2(uv), 0.0);
+    return exp(((_e38 * extinction_3) * (length_m_20 * -0.001)));
 }
 
 // Transmittance and path radiance in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
@@ -2252,16 +2304,16 @@ PathOptics rgb_path(RgbWeights radiance_3, RgbWeights transmittance, SpectralPat
 
 // Place of a row, 0 to 1, from the absolute elevation and its sine.
 // Cost: 2 exp.
-float fog_row_place(float per_sine, float sine, float elevation_rad_3) {
+float fog_row_place(float per_sine, float sine, float elevation_rad_4) {
     float logarithm = (log((1.0 + (sine * per_sine))) / log((1.0 + per_sine)));
-    return ((FOG_LOGARITHMIC * logarithm) + (0.25464788 * elevation_rad_3));
+    return ((FOG_LOGARITHMIC * logarithm) + (0.25464788 * elevation_rad_4));
 }
 
 // Texture coordinate of the rows of a direction: falling rays come first.
 // Cost: 2 exp.
-float fog_row_coordinate(FogTableView view_20, vec3 direction_11) {
+float fog_row_coordinate(FogTableView view_23, vec3 direction_11) {
     bool is_above = (direction_11.y > 0.0);
-    float per_sine_1 = (is_above ? view_20.above_per_sine : view_20.below_per_sine);
+    float per_sine_1 = (is_above ? view_23.above_per_sine : view_23.below_per_sine);
     float _e10 = elevation_of(direction_11);
     float _e12 = fog_row_place(per_sine_1, abs(direction_11.y), abs(_e10));
     return ((((is_above ? FOG_ROWS : 0.0) + 0.5) + (_e12 * 63.0)) / 128.0);
@@ -2269,8 +2321,8 @@ float fog_row_coordinate(FogTableView view_20, vec3 direction_11) {
 
 // Texture coordinate in stacked tables from that in the table of the layer.
 // Cost: no exp.
-float fog_stacked_coordinate(FogTableView view_21, float coordinate_2) {
-    return ((view_21.layer + coordinate_2) / view_21.layer_count);
+float fog_stacked_coordinate(FogTableView view_24, float coordinate_2) {
+    return ((view_24.layer + coordinate_2) / view_24.layer_count);
 }
 
 // Opacity of an optical depth: 1 minus the transmittance, without cancellation.
@@ -2282,8 +2334,8 @@ vec3 fog_opacity(vec3 depth_2) {
 
 // Place of a distance, 0 to 1, from the opacity and the transmittance up to there, relative to those of the whole ray to the ground or through the fog.
 // Cost: 6 exp.
-float fog_distance_place(FogTableView view_22, float sin_elevation_15, vec3 opacity, vec3 transmittance_1) {
-    vec3 vertical = ((sin_elevation_15 > 0.0) ? view_22.depth_above : view_22.depth_below);
+float fog_distance_place(FogTableView view_25, float sin_elevation_15, vec3 opacity, vec3 transmittance_1) {
+    vec3 vertical = ((sin_elevation_15 > 0.0) ? view_25.depth_above : view_25.depth_below);
     vec3 depth_6 = min((vertical / vec3(max(abs(sin_elevation_15), 1e-10))), vec3(1e25));
     vec3 _e17 = fog_opacity(depth_6);
     float whole = dot(_e17, vec3(1.0));
@@ -2295,35 +2347,35 @@ float fog_distance_place(FogTableView view_22, float sin_elevation_15, vec3 opac
 
 // Sunlight that is scattered once with a phase function, by its index, in a stream (0, 1 or 2), per unit of opacity, before its scale: from the texture coordinates of distance, row and angle.
 // Cost: 3 exp, 2 reads.
-vec3 fog_stream_light(FogTableView view_23, highp sampler3D stream_table, highp sampler2D stream_phase_table, vec3 place_7, float phase_1, float stream) {
-    float slice = ((((3.0 * phase_1) + stream) + 0.5) / (3.0 * view_23.phase_count));
-    float _e17 = fog_stacked_coordinate(view_23, slice);
-    vec3 uvw_1 = vec3(place_7.xy, _e17);
+vec3 fog_stream_light(FogTableView view_26, highp sampler3D stream_table, highp sampler2D stream_phase_table, vec3 place_9, float phase_1, float stream) {
+    float slice = ((((3.0 * phase_1) + stream) + 0.5) / (3.0 * view_26.phase_count));
+    float _e17 = fog_stacked_coordinate(view_26, slice);
+    vec3 uvw_1 = vec3(place_9.xy, _e17);
     vec4 logarithms = textureLod(stream_table, vec3(uvw_1), 0.0);
-    vec4 scattered_2 = textureLod(stream_phase_table, vec2(vec2(place_7.z, slice)), 0.0);
+    vec4 scattered_2 = textureLod(stream_phase_table, vec2(vec2(place_9.z, slice)), 0.0);
     return (exp(logarithms.xyz) * scattered_2.xyz);
 }
 
 // A layer of fog between the eye and a point, by its optical depth on the way: extinction times `exponential_column_m`, or the column of another profile. Rays end at the ground. Of several layers, transmittances multiply and path radiances add up. A step is a phase function of the fog.
 // Cost: 14 exp, 9 exp a step, 1 read, 6 reads a step.
-PathOptics tabulated_fog(FogTableView view_24, highp sampler3D diffuse_table, highp sampler3D stream_table_1, highp sampler2D stream_phase_table_1, vec3 direction_12, vec3 optical_depth_2) {
+PathOptics tabulated_fog(FogTableView view_27, highp sampler3D diffuse_table, highp sampler3D stream_table_1, highp sampler2D stream_phase_table_1, vec3 direction_12, vec3 optical_depth_2) {
     vec3 sunlit_1 = vec3(0.0);
     float phase_2 = 0.0;
     vec3 _e7 = fog_opacity(optical_depth_2);
     vec3 transmittance_3 = exp(-(optical_depth_2));
-    float _e11 = azimuth_place(direction_12, view_24.sun);
+    float _e11 = azimuth_place(direction_12, view_27.sun);
     float _e13 = texel_coordinate(_e11, FOG_AZIMUTHS);
-    float _e14 = fog_row_coordinate(view_24, direction_12);
-    float _e16 = fog_distance_place(view_24, direction_12.y, _e7, transmittance_3);
+    float _e14 = fog_row_coordinate(view_27, direction_12);
+    float _e16 = fog_distance_place(view_27, direction_12.y, _e7, transmittance_3);
     float _e18 = texel_coordinate(_e16, FOG_DISTANCES);
-    float _e19 = fog_stacked_coordinate(view_24, _e18);
+    float _e19 = fog_stacked_coordinate(view_27, _e18);
     vec3 uvw_2 = vec3(_e13, _e14, _e19);
     vec4 _e22 = textureLod(diffuse_table, vec3(uvw_2), 0.0);
     vec3 diffuse = _e22.xyz;
-    float _e25 = one_minus_cos_between(direction_12, view_24.sun);
+    float _e25 = one_minus_cos_between(direction_12, view_27.sun);
     float _e26 = phase_place(_e25);
     float _e28 = texel_coordinate(_e26, PHASE_ANGLES);
-    vec3 place_11 = vec3(_e18, _e14, _e28);
+    vec3 place_13 = vec3(_e18, _e14, _e28);
     bool loop_init_12 = true;
     while(true) {
         if (!loop_init_12) {
@@ -2332,23 +2384,23 @@ PathOptics tabulated_fog(FogTableView view_24, highp sampler3D diffuse_table, hi
         }
         loop_init_12 = false;
         float _e35 = phase_2;
-        if ((_e35 < view_24.phase_count)) {
+        if ((_e35 < view_27.phase_count)) {
         } else {
             break;
         }
         {
             vec3 _e38 = sunlit_1;
             float _e39 = phase_2;
-            vec3 _e41 = fog_stream_light(view_24, stream_table_1, stream_phase_table_1, place_11, _e39, 0.0);
+            vec3 _e41 = fog_stream_light(view_27, stream_table_1, stream_phase_table_1, place_13, _e39, 0.0);
             float _e42 = phase_2;
-            vec3 _e44 = fog_stream_light(view_24, stream_table_1, stream_phase_table_1, place_11, _e42, 1.0);
+            vec3 _e44 = fog_stream_light(view_27, stream_table_1, stream_phase_table_1, place_13, _e42, 1.0);
             float _e46 = phase_2;
-            vec3 _e48 = fog_stream_light(view_24, stream_table_1, stream_phase_table_1, place_11, _e46, 2.0);
+            vec3 _e48 = fog_stream_light(view_27, stream_table_1, stream_phase_table_1, place_13, _e46, 2.0);
             sunlit_1 = (_e38 + ((_e41 + _e44) + _e48));
         }
     }
     vec3 _e57 = sunlit_1;
-    vec3 source_1 = ((view_24.diffuse_scale * diffuse) + (view_24.sunlit_scale * max(_e57, vec3(0.0))));
+    vec3 source_1 = ((view_27.diffuse_scale * diffuse) + (view_27.sunlit_scale * max(_e57, vec3(0.0))));
     return PathOptics(transmittance_3, (_e7 * source_1));
 }
 
@@ -2444,11 +2496,11 @@ ArticleSky article_sky(float eye_altitude_m, float zenith_illuminance) {
 
 // Light that a point scatters along a view ray, per metre.
 // Cost: 6 exp, 3 exp a step; 8 steps.
-vec3 article_source(ArticleSky sky, vec3 position_7, vec3 view_25, vec3 sun_1) {
+vec3 article_source(ArticleSky sky, vec3 position_7, vec3 view_28, vec3 sun_1) {
     float _e5 = article_distance_m(position_7, sun_1, ARTICLE_TOP_RADIUS_M);
     vec3 leaves = (position_7 + (sun_1 * _e5));
     vec3 _e8 = article_transmittance(position_7, leaves);
-    float mu_3 = dot(view_25, sun_1);
+    float mu_3 = dot(view_28, sun_1);
     vec3 _e10 = article_sigma_rayleigh(position_7);
     float _e11 = article_rayleigh_phase(mu_3);
     vec3 rayleigh = (_e10 * _e11);
@@ -2460,11 +2512,11 @@ vec3 article_source(ArticleSky sky, vec3 position_7, vec3 view_25, vec3 sun_1) {
 
 // Luminance of the sky along a direction above the horizon, without the sun's disc.
 // Cost: 15 exp a step; 8 steps, in each of which two marches of 8 steps take 6 of these, 456 in all.
-vec3 article_luminance(ArticleSky sky_1, vec3 view_26, vec3 sun_2) {
+vec3 article_luminance(ArticleSky sky_1, vec3 view_29, vec3 sun_2) {
     vec3 sum_6 = vec3(0.0);
     int i_13 = 0;
-    float _e6 = article_distance_m(sky_1.eye, view_26, ARTICLE_TOP_RADIUS_M);
-    vec3 leaves_1 = (sky_1.eye + (view_26 * _e6));
+    float _e6 = article_distance_m(sky_1.eye, view_29, ARTICLE_TOP_RADIUS_M);
+    vec3 leaves_1 = (sky_1.eye + (view_29 * _e6));
     vec3 ds_1 = ((leaves_1 - sky_1.eye) / vec3(8.0));
     vec3 direction_15 = (ds_1 / vec3(length(ds_1)));
     bool loop_init_14 = true;
@@ -2494,11 +2546,11 @@ vec3 article_luminance(ArticleSky sky_1, vec3 view_26, vec3 sun_2) {
 
 // Luminance of the sun's disc along a direction above the horizon, whose edge is smooth from 0.95 to 1.05 of its radius. The cosine is clamped to 1, unlike as printed.
 // Cost: 3 exp, 3 exp a step; 8 steps.
-vec3 article_disc(ArticleSky sky_2, vec3 view_27, vec3 sun_3) {
-    float angle = acos(min(dot(view_27, sun_3), 1.0));
+vec3 article_disc(ArticleSky sky_2, vec3 view_30, vec3 sun_3) {
+    float angle = acos(min(dot(view_30, sun_3), 1.0));
     float disc = (1.0 - smoothstep((0.95 * sky_2.sun_radius_rad), (1.05 * sky_2.sun_radius_rad), angle));
-    float _e19 = article_distance_m(sky_2.eye, view_27, ARTICLE_TOP_RADIUS_M);
-    vec3 leaves_2 = (sky_2.eye + (view_27 * _e19));
+    float _e19 = article_distance_m(sky_2.eye, view_30, ARTICLE_TOP_RADIUS_M);
+    vec3 leaves_2 = (sky_2.eye + (view_30 * _e19));
     vec3 _e25 = article_transmittance(sky_2.eye, leaves_2);
     return ((sky_2.outer_space * disc) * _e25);
 }
@@ -2509,13 +2561,13 @@ LimbDarkening limb_darkening(vec4 wavelengths_nm) {
     vec4 per_um = (vec4(1000.0) / clamp(wavelengths_nm, vec4(422.57), vec4(1099.0)));
     vec4 power = ((((per_um * per_um) * per_um) * per_um) * per_um);
     vec4 zeroth = (vec4(0.75267) - (0.265577 * per_um));
-    vec4 first_3 = ((vec4(0.93874) + (0.265577 * per_um)) - (0.004095 * power));
+    vec4 first_4 = ((vec4(0.93874) + (0.265577 * per_um)) - (0.004095 * power));
     vec4 second = (vec4(-1.89287) + (0.012582 * power));
     vec4 third = (vec4(2.42234) - (0.017117 * power));
     vec4 fourth = (vec4(-1.7115) + (0.011977 * power));
     vec4 fifth = (vec4(0.49062) - (0.003347 * power));
-    vec4 mean_1 = (((((zeroth + (first_3 * 0.6666667)) + (second * 0.5)) + (third * 0.4)) + (fourth * 0.33333334)) + (fifth * 0.2857143));
-    return LimbDarkening((zeroth / mean_1), (first_3 / mean_1), (second / mean_1), (third / mean_1), (fourth / mean_1), (fifth / mean_1));
+    vec4 mean_1 = (((((zeroth + (first_4 * 0.6666667)) + (second * 0.5)) + (third * 0.4)) + (fourth * 0.33333334)) + (fifth * 0.2857143));
+    return LimbDarkening((zeroth / mean_1), (first_4 / mean_1), (second / mean_1), (third / mean_1), (fourth / mean_1), (fifth / mean_1));
 }
 
 // Radiance of the disc at `mu`, relative to its mean.
@@ -2532,8 +2584,8 @@ float place_on_disc(float sin_radius, float one_minus_cos_8) {
 
 // Part of a pixel that the disc covers, 0 to 1: a ramp as wide as a pixel across the edge, so that the edge is smooth and the disc's light is kept, within `(pixel / radius)^2 / 12`. `sin_pixel` is the sine of the angle that a pixel spans; 0 gives a sharp edge.
 // Cost: no exp.
-float disc_coverage(float place_8, float sin_radius_1, float sin_pixel) {
-    return clamp((((1.0 - place_8) * (sin_radius_1 / max(sin_pixel, (1e-6 * sin_radius_1)))) + 0.5), 0.0, 1.0);
+float disc_coverage(float place_10, float sin_radius_1, float sin_pixel) {
+    return clamp((((1.0 - place_10) * (sin_radius_1 / max(sin_pixel, (1e-6 * sin_radius_1)))) + 0.5), 0.0, 1.0);
 }
 
 // Radiance of the sun's disc in a pixel whose centre is `one_minus_cos` from the sun, from the disc's mean radiance: the irradiance on a surface that faces the sun, divided by `pi sin_radius^2`. Without attenuation by air.
@@ -2611,8 +2663,8 @@ vec3 camera_tone(vec3 exposed_1, float contrast_1, float saturation) {
 // Cost: 9 exp.
 vec3 agx_response(vec3 x_4) {
     vec3 stops = log2((max(x_4, vec3(1e-9)) / vec3(0.18)));
-    vec3 place_12 = clamp(((stops + vec3(10.0)) / vec3(16.5)), vec3(0.0), vec3(1.0));
-    vec3 from_grey = (place_12 - vec3(0.6060606));
+    vec3 place_14 = clamp(((stops + vec3(10.0)) / vec3(16.5)), vec3(0.0), vec3(1.0));
+    vec3 from_grey = (place_14 - vec3(0.6060606));
     bvec3 is_toe = lessThan(from_grey, vec3(0.0));
     vec3 limit = mix(vec3(0.7151983), vec3(0.5656756), is_toe);
     vec3 u_2 = (2.4 * abs(from_grey));

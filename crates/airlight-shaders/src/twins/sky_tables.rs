@@ -15,15 +15,19 @@ pub const SKY_ROWS_ABOVE: f32 = 125.0;
 /// Rows of a sky table from the horizon to the nadir.
 pub const SKY_ROWS_BELOW: f32 = 35.0;
 /// Columns of an aerial-perspective table.
-pub const AERIAL_AZIMUTHS: f32 = 32.0;
+pub const AERIAL_AZIMUTHS: f32 = 24.0;
 /// Width of the first of these columns relative to even ones.
-pub const AERIAL_FIRST_COLUMN: f32 = 0.4;
+pub const AERIAL_FIRST_COLUMN: f32 = 0.3;
 /// Rows of an aerial-perspective table from the horizon to the highest elevation; they come first.
-pub const AERIAL_ROWS_ABOVE: f32 = 32.0;
+pub const AERIAL_ROWS_ABOVE: f32 = 46.0;
 /// Rows of an aerial-perspective table from the horizon to the nadir.
-pub const AERIAL_ROWS_BELOW: f32 = 32.0;
+pub const AERIAL_ROWS_BELOW: f32 = 18.0;
+/// Height of the first row above the horizon, or above the rays that graze a jump of density, relative to one of [`row_place`].
+pub const AERIAL_FIRST_ROW: f32 = 0.6;
 /// Distances of an aerial-perspective table.
-pub const AERIAL_DISTANCES: f32 = 40.0;
+pub const AERIAL_DISTANCES: f32 = 42.0;
+/// Length behind a jump of density at which these distances are a quarter as dense as just behind it, m.
+pub const BEHIND_JUMP_M: f32 = 1e5;
 /// Angles of a table of phase functions.
 pub const PHASE_ANGLES: f32 = 1024.0;
 
@@ -60,8 +64,9 @@ pub struct SkyView {
     /// Place among the distances of an aerial-perspective table at which rays that do not meet the ground first cross that jump, 0 to 1; 0
     /// without a jump, and for an eye above the air.
     pub jump_place: f32,
-    /// Length of the first step between the distances of such rays, relative to even steps, from inside the air.
-    pub level_step: f32,
+    /// Part of the way through the air at which the ray that grazes that jump, or from below the level one, crosses it; 0 if
+    /// `jump_place` is.
+    pub jump_part: f32,
     /// Extinction just above that jump relative to that just below it; 1 without a jump.
     pub extinction_above: Vec4,
     /// Smooth light that a metre of air scatters just above that jump relative to one just below it; 1 without a jump.
@@ -305,7 +310,7 @@ pub fn first_step(view: SkyView, span_m: Vec2, meets_ground: bool) -> f32 {
         return if meets_ground { 2.0 } else { 1.0 };
     }
     if !meets_ground {
-        return view.level_step;
+        return 0.0;
     }
     let slant = 1.0 - (view.height_m / span_m.y.max(1.0)).min(1.0);
     let high = (2.5 * view.height_m / view.air_height_m).min(1.0);
@@ -329,13 +334,59 @@ pub fn aerial_column_place(view: SkyView, azimuth: f32) -> f32 {
     place_from_part(column_place(view, azimuth), AERIAL_FIRST_COLUMN)
 }
 
-/// Part of the way of a ray through the air at which it first crosses the jump of density nearest to the eye; 0 if it does not cross it, or
-/// meets the ground.
+/// Place among the rows of an aerial-perspective table of the rays that graze a jump of density: that of the nearest row.
+pub fn aerial_kink_place(view: SkyView) -> f32 {
+    let steps = AERIAL_ROWS_ABOVE - 1.0;
+    (view.kink_place * steps).round() / steps
+}
+
+/// Place from 0 to 1 among the rows of an aerial-perspective table of the place that an elevation has by [`row_place`].
+pub fn aerial_row_place(view: SkyView, row_place: f32, is_below: bool) -> f32 {
+    if is_below {
+        return row_place;
+    }
+    let kink_place = aerial_kink_place(view);
+    if row_place < view.kink_place {
+        return row_place * kink_place / view.kink_place;
+    }
+    let part = (row_place - view.kink_place) / (1.0 - view.kink_place);
+    kink_place.lerp(1.0, place_from_part(part, AERIAL_FIRST_ROW))
+}
+
+/// Inverse of [`aerial_row_place`]: place by [`row_place`].
+pub fn row_place_from_aerial(view: SkyView, place: f32, is_below: bool) -> f32 {
+    if is_below {
+        return place;
+    }
+    let kink_place = aerial_kink_place(view);
+    if place < kink_place {
+        return place * view.kink_place / kink_place;
+    }
+    let place = (place - kink_place) / (1.0 - kink_place);
+    view.kink_place
+        .lerp(1.0, part_from_place(place, AERIAL_FIRST_ROW))
+}
+
+/// Texture coordinate of an elevation in an aerial-perspective table.
+pub fn aerial_row_coordinate(view: SkyView, elevation_rad: f32, is_below: bool) -> f32 {
+    let place = aerial_row_place(view, row_place(view, elevation_rad, is_below), is_below);
+    let (rows, first) = match is_below {
+        true => (AERIAL_ROWS_BELOW, AERIAL_ROWS_ABOVE),
+        false => (AERIAL_ROWS_ABOVE, 0.0),
+    };
+    (first + 0.5 + place * (rows - 1.0)) / (AERIAL_ROWS_ABOVE + AERIAL_ROWS_BELOW)
+}
+
+/// Part of the way of a ray through the air at which it first crosses the jump of density nearest to the eye, or if it does not, at which
+/// the ray that grazes the jump does; 0 if the ray meets the ground.
 pub fn part_at_jump(view: SkyView, span_m: Vec2, sin_elevation: f32, meets_ground: bool) -> f32 {
     if view.jump_place == 0.0 || meets_ground {
         return 0.0;
     }
     let below = below_jump_m(view, span_m, sin_elevation, meets_ground);
+    if below.y == 0.0 {
+        return view.jump_part;
+    }
     let crossing = match below.x > span_m.x {
         true => below.x,
         false => below.y,
@@ -343,14 +394,16 @@ pub fn part_at_jump(view: SkyView, span_m: Vec2, sin_elevation: f32, meets_groun
     ((crossing - span_m.x) / (span_m.y - span_m.x).max(1e-6)).clamp(0.0, 1.0)
 }
 
-/// Lengths of the first steps between the distances before and behind a jump, as [`first_step`].
-pub fn steps_at_jump(view: SkyView) -> Vec2 {
-    let growth = 1.0 - view.level_step;
-    let at_jump = view.level_step + 2.0 * growth * view.jump_place;
-    Vec2::new(
-        view.level_step / (view.level_step + growth * view.jump_place),
-        at_jump / (at_jump + growth * (1.0 - view.jump_place)),
-    )
+/// Place from 0 to 1 of a part of the way behind a jump of density, of a length (m), among the distances there: dense behind the jump.
+pub fn place_behind_jump(part: f32, length_m: f32) -> f32 {
+    let length = length_m / BEHIND_JUMP_M;
+    part * (1.0 + length) / (1.0 + part * length)
+}
+
+/// Inverse of [`place_behind_jump`].
+pub fn part_behind_jump(place: f32, length_m: f32) -> f32 {
+    let length = length_m / BEHIND_JUMP_M;
+    place / (1.0 + (1.0 - place) * length)
 }
 
 /// Place from 0 to 1 of a length in the air among the distances of a ray with an interval in the air.
@@ -366,12 +419,13 @@ pub fn distance_place(
     if at_jump == 0.0 {
         return place_from_part(part, first_step(view, span_m, meets_ground));
     }
-    let steps = steps_at_jump(view);
     if part < at_jump {
-        return view.jump_place * place_from_part(part / at_jump, steps.x);
+        return view.jump_place * (part / at_jump).sqrt();
     }
     let behind = ((part - at_jump) / (1.0 - at_jump).max(1e-6)).clamp(0.0, 1.0);
-    view.jump_place.lerp(1.0, place_from_part(behind, steps.y))
+    let behind_m = (1.0 - at_jump) * (span_m.y - span_m.x);
+    view.jump_place
+        .lerp(1.0, place_behind_jump(behind, behind_m))
 }
 
 /// Inverse of [`distance_place`]: length in the air, m.
@@ -385,10 +439,11 @@ pub fn length_from_distance_place(
     let at_jump = part_at_jump(view, span_m, sin_elevation, meets_ground);
     let mut part = part_from_place(place, first_step(view, span_m, meets_ground));
     if at_jump > 0.0 && place < view.jump_place {
-        part = at_jump * part_from_place(place / view.jump_place, steps_at_jump(view).x);
+        part = at_jump * (place / view.jump_place).powi(2);
     } else if at_jump > 0.0 {
         let behind = (place - view.jump_place) / (1.0 - view.jump_place);
-        part = at_jump.lerp(1.0, part_from_place(behind, steps_at_jump(view).y));
+        let behind_m = (1.0 - at_jump) * (span_m.y - span_m.x);
+        part = at_jump.lerp(1.0, part_behind_jump(behind, behind_m));
     }
     part * (span_m.y - span_m.x)
 }
@@ -468,13 +523,7 @@ pub fn aerial_perspective(
     let share = share_below_jump(view, span, direction.y, length_m, is_below);
     let extinction = view.extinction_above.lerp(Vec4::ONE, share);
     let place = distance_place(view, span, direction.y, length_m, is_below);
-    let row = row_coordinate(
-        view,
-        elevation_rad,
-        is_below,
-        AERIAL_ROWS_ABOVE,
-        AERIAL_ROWS_BELOW,
-    );
+    let row = aerial_row_coordinate(view, elevation_rad, is_below);
     let azimuth = azimuth_place(direction, view.sun);
     let uvw = Vec3::new(
         texel_coordinate(aerial_column_place(view, azimuth), AERIAL_AZIMUTHS),
@@ -514,13 +563,7 @@ pub fn aerial_transmittance(
     let share = share_below_jump(view, span, direction.y, length_m, is_below);
     let extinction = view.extinction_above.lerp(Vec4::ONE, share);
     let place = distance_place(view, span, direction.y, length_m, is_below);
-    let row = row_coordinate(
-        view,
-        elevation_rad,
-        is_below,
-        AERIAL_ROWS_ABOVE,
-        AERIAL_ROWS_BELOW,
-    );
+    let row = aerial_row_coordinate(view, elevation_rad, is_below);
     let uv = Vec2::new(texel_coordinate(place, AERIAL_DISTANCES), row);
     (extinction_table.sample(linear_sampler, uv) * extinction * (length_m * -1e-3)).exp()
 }

@@ -47,7 +47,7 @@ fn uniform(tables: &SkyTables) -> Vec<u8> {
     ]);
     numbers.extend([view.dense_width, view.even_below]);
     numbers.extend([view.jump_height_m, view.jump_place]);
-    numbers.extend([view.level_step, 0.0, 0.0, 0.0]);
+    numbers.extend([view.jump_part, 0.0, 0.0, 0.0]);
     let rows = |weights: RgbWeights| [weights.red, weights.green, weights.blue];
     let mut vectors = vec![view.extinction_above, view.smooth_above, view.haze_above];
     vectors.extend([tables.scales.smooth_light, tables.scales.haze]);

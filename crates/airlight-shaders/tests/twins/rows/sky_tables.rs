@@ -12,7 +12,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 flat_struct! {
     twins::sky_tables::SkyView { sun, height_m, ground_radius_m, air_height_m, horizon_rad, highest_rad, kink_rad, kink_place,
-        dense_share, dense_azimuth, dense_width, even_below, jump_height_m, jump_place, level_step, extinction_above, smooth_above, haze_above }
+        dense_share, dense_azimuth, dense_width, even_below, jump_height_m, jump_place, jump_part, extinction_above, smooth_above, haze_above }
     twins::sky_tables::SkyScales { smooth_light, haze }
     twins::sky_tables::SpectralPath { transmittance, path_radiance }
 }
@@ -63,7 +63,7 @@ fn view(r: &mut Random) -> Vec<f32> {
     all.extend(match f64::from(height_m) < TOP_M {
         true => [
             r.one_of(&[0.0, 0.2, 0.8]),
-            r.or(&[0.0], |r| r.between(0.0, 0.5)),
+            r.or(&[0.1], |r| r.between(0.05, 0.9)),
         ],
         false => [0.0; 2],
     });
@@ -176,7 +176,33 @@ fn elevation_of_row(view: &[f64], coordinate: f64, rows: [f64; 2]) -> f64 {
 }
 
 const SKY_ROWS: [f64; 2] = [125.0, 35.0];
-const AERIAL_ROWS: [f64; 2] = [32.0, 32.0];
+const AERIAL_ROWS: [f64; 2] = [46.0, 18.0];
+
+/// Place among the rows of aerial perspective of a place among those of the sky: in both, the rays that graze a jump are at a row.
+fn aerial_place(view: &[f64], place: f64, below: bool) -> f64 {
+    let kink = [view[9], aerial_kink(view)];
+    if below {
+        place
+    } else if place < kink[0] {
+        kink[1] * place / kink[0]
+    } else {
+        let above = (place - kink[0]) / (1.0 - kink[0]);
+        kink[1] + (1.0 - kink[1]) * inverse(|place| part(place, 0.6), above)
+    }
+}
+
+fn aerial_kink(view: &[f64]) -> f64 {
+    let steps = AERIAL_ROWS[0] - 1.0;
+    (view[9] * steps).round() / steps
+}
+
+fn aerial_row(view: &[f64], elevation: f64, below: bool) -> f64 {
+    let place = aerial_place(view, place(view, elevation, below), below);
+    match below {
+        true => (46.5 + 17.0 * place) / 64.0,
+        false => (0.5 + 45.0 * place) / 64.0,
+    }
+}
 
 fn uv(view: &[f64], direction: &[f64]) -> [f64; 2] {
     let elevation = elevation(direction);
@@ -235,13 +261,16 @@ fn share(view: &[f64], span: [f64; 2], sine: f64, length: f64, meets_ground: boo
     (inside / length.max(1e-6)).clamp(0.0, 1.0)
 }
 
-/// Part of a way in the air up to the first crossing of that sphere.
+/// Part of a way in the air up to the first crossing of that sphere, or that of the grazing ray.
 fn part_up_to_jump(view: &[f64], span: [f64; 2], sine: f64, meets_ground: bool) -> f64 {
     let [entry, exit] = below_jump(view, span, sine, meets_ground);
     let crossing = if entry > span[0] { entry } else { exit };
-    match view[15] == 0.0 || meets_ground {
-        true => 0.0,
-        false => ((crossing - span[0]) / (span[1] - span[0]).max(1e-6)).clamp(0.0, 1.0),
+    if view[15] == 0.0 || meets_ground {
+        0.0
+    } else if exit == 0.0 {
+        view[16]
+    } else {
+        ((crossing - span[0]) / (span[1] - span[0]).max(1e-6)).clamp(0.0, 1.0)
     }
 }
 
@@ -262,7 +291,7 @@ fn step_at_eye(view: &[f64], span: [f64; 2], meets_ground: bool) -> f64 {
     match (height < top, meets_ground) {
         (false, true) => 2.0,
         (false, false) => 1.0,
-        (true, false) => view[16],
+        (true, false) => 0.0,
         (true, true) => {
             let slant = 1.0 - (height / span[1].max(1.0)).min(1.0);
             2.0 * (2.5 * height / top).min(1.0) * (1.0 - slant.powi(4))
@@ -275,18 +304,26 @@ fn part(place: f64, first_step: f64) -> f64 {
     first_step * place + (1.0 - first_step) * place * place
 }
 
-/// Part of the way in the air at a place: along the ray that grazes the jump, the step is [`step_at_eye`]'s throughout; along others the
-/// parts before and behind the jump are scaled to its crossing.
+/// Part of the way in the air at a place: the square of the place up to a jump, and behind it what [`place_behind`] has there.
 fn way_at(view: &[f64], span: [f64; 2], sine: f64, place: f64, meets_ground: bool) -> f64 {
-    let way = part(place, step_at_eye(view, span, meets_ground));
     let at_jump = part_up_to_jump(view, span, sine, meets_ground);
-    let grazing = part(view[15], view[16]);
     if at_jump == 0.0 {
-        way
+        part(place, step_at_eye(view, span, meets_ground))
     } else if place < view[15] {
-        at_jump * way / grazing
+        at_jump * (place / view[15]).powi(2)
     } else {
-        at_jump + (1.0 - at_jump) * (way - grazing) / (1.0 - grazing)
+        let length = (1.0 - at_jump) * (span[1] - span[0]);
+        let place = (place - view[15]) / (1.0 - view[15]);
+        at_jump + (1.0 - at_jump) * inverse(|part| place_behind(part, length), place)
+    }
+}
+
+/// Place of a part of a length, m: the integral of 1 / (1 + distance / 100 km)^2 up to there, of that over all.
+fn place_behind(part: f64, length: f64) -> f64 {
+    let integral = |distance: f64| distance / (1.0 + distance / 1e5);
+    match length == 0.0 {
+        true => part,
+        false => integral(part * length) / integral(length),
     }
 }
 
@@ -334,7 +371,7 @@ fn crossing_ray(r: &mut Random) -> Vec<f32> {
 }
 
 fn column_of_aerial(view: &[f64], azimuth: f64) -> f64 {
-    inverse(|place| part(place, 0.4), column(view, azimuth))
+    inverse(|place| part(place, 0.3), column(view, azimuth))
 }
 
 pub fn place_of_phase(one_minus_cos: f64) -> f64 {
@@ -411,9 +448,9 @@ fn aerial(x: &[f64]) -> Vec<f64> {
         return [[1.0; 4], [0.0; 4]].concat();
     }
     let place = place_of_distance(view, [start, end], direction[1], length, below);
-    let w = texel(place, 40.0);
-    let v = row(view, elevation, below, AERIAL_ROWS);
-    let u = texel(column_of_aerial(view, azimuth(direction, view)), 32.0);
+    let w = texel(place, 42.0);
+    let v = aerial_row(view, elevation, below);
+    let u = texel(column_of_aerial(view, azimuth(direction, view)), 24.0);
     let phase = haze_phase(one_minus_cos(direction, view));
     let share = share(view, [start, end], direction[1], length, below);
     let extinction = relative(&view[17..21], share);
@@ -545,16 +582,29 @@ pub fn sky_tables() -> Vec<Row> {
             let of = &x[VIEW..];
             vec![part_up_to_jump(x, [of[0], of[1]], of[2], of[3] != 0.0)]
         };
-        steps_at_jump: |r| {
+        place_behind_jump: |r| vec![r.or(&[0.0, 1.0], Random::unit), r.or(&[0.0, 1e5], |r| r.decades(10.0, 2e6))]
+            => |x| vec![place_behind(x[0], x[1])];
+        part_behind_jump: |r| vec![r.or(&[0.0, 1.0], Random::unit), r.or(&[0.0, 1e5], |r| r.decades(10.0, 2e6))]
+            => |x| vec![inverse(|part| place_behind(part, x[1]), x[0])];
+        aerial_kink_place: view => |x| vec![aerial_kink(x)];
+        aerial_row_place: |r| {
             let mut all = view(r);
-            all[15] = r.between(0.01, 0.9);
+            all.extend([r.or(&[0.0, 1.0, all[9]], Random::unit), r.one_of(&[0.0, 1.0])]);
             all
-        } => |x| {
-            // Slopes of the way at the start of each part, relative to the mean slope of the part.
-            let (place, step) = (x[15], x[16]);
-            let at_jump = part(place, step);
-            vec![step * place / at_jump, (step + 2.0 * (1.0 - step) * place) * (1.0 - place) / (1.0 - at_jump)]
-        };
+        } => |x| vec![aerial_place(x, x[VIEW], x[VIEW + 1] != 0.0)];
+        row_place_from_aerial: |r| {
+            let mut all = view(r);
+            all.extend([r.or(&[0.0, 1.0], Random::unit), r.one_of(&[0.0, 1.0])]);
+            all
+        } => |x| vec![inverse(|place| aerial_place(x, place, x[VIEW + 1] != 0.0), x[VIEW])];
+        aerial_row_coordinate: |r| {
+            let mut all = view_and_direction(r);
+            let elevation = all[VIEW + 1].clamp(-1.0, 1.0).asin();
+            let below = elevation < all[6];
+            all.truncate(VIEW);
+            all.extend([elevation, f32::from(below)]);
+            all
+        } => |x| vec![aerial_row(x, x[VIEW], x[VIEW + 1] != 0.0)];
         aerial_column_place: |r| [view(r), vec![r.or(&[0.0, 1.0], Random::unit)]].concat()
             => |x| vec![column_of_aerial(x, x[VIEW])];
         first_step: |r| ray(r) => |x| vec![step_at_eye(x, [x[VIEW], x[VIEW + 1]], x[VIEW + 2] != 0.0)];
