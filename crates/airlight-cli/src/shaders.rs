@@ -4,7 +4,7 @@ use crate::args::ShadersArgs;
 use crate::error::CliError;
 use crate::report;
 use airlight::Named;
-use airlight_shaders::{Part, translated_files};
+use airlight_shaders::{Part, Subject, translated_files};
 
 /// Writes the file of functions, or the modules.
 ///
@@ -12,10 +12,11 @@ use airlight_shaders::{Part, translated_files};
 /// [`CliError`] if the folder cannot be made or a file cannot be written.
 pub fn run(args: &ShadersArgs) -> Result<(), CliError> {
     let parts = match args.only.is_empty() {
-        true => Part::ALL,
-        false => &args.only,
+        true => Part::ALL.to_vec(),
+        false => args.only.iter().flat_map(Subject::parts).copied().collect(),
     };
-    let files = translated_files(parts, args.lang).map_err(|e| CliError::failure(e.to_string()))?;
+    let files =
+        translated_files(&parts, args.lang).map_err(|e| CliError::failure(e.to_string()))?;
     let folder = args.output.display();
     if args.output.is_file() {
         let sentence =

@@ -62,7 +62,7 @@ pub use fog_tables::{FogTables, FogTablesError};
 pub use function::{ErrorBound, Function, functions};
 #[cfg(feature = "translate")]
 pub use language::{Language, TranslateError};
-pub use part::{Part, source, with_required};
+pub use part::{Part, Subject, source, with_required};
 pub use pass::Pass;
 pub use sky_tables::{SingleScatteringTable, SkyTables, SkyTablesError};
 #[cfg(feature = "translate")]

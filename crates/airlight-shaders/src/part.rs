@@ -89,6 +89,55 @@ impl Part {
     }
 }
 
+/// What a program asks for by name: one part, or all of a subject.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Subject {
+    /// The sky, aerial perspective and the sun's disc: from tables, and marched without any.
+    Sky,
+    /// A part.
+    Part(Part),
+}
+
+impl Subject {
+    /// Its parts, without those that they require.
+    pub fn parts(&self) -> &[Part] {
+        match self {
+            Self::Sky => &[Part::SkyTables, Part::Air, Part::Disc],
+            Self::Part(part) => std::slice::from_ref(part),
+        }
+    }
+}
+
+impl Named for Subject {
+    const WHAT: &'static str = "a part of the shader library or a subject";
+    const ALL: &'static [Self] = &{
+        let mut all = [Self::Sky; Part::ALL.len() + 1];
+        let mut k = 0;
+        while k < Part::ALL.len() {
+            all[k + 1] = Self::Part(Part::ALL[k]);
+            k += 1;
+        }
+        all
+    };
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Sky => "sky",
+            Self::Part(part) => part.name(),
+        }
+    }
+
+    fn summary(self) -> &'static str {
+        match self {
+            Self::Sky => {
+                "the parts sky-tables, air and disc: skies and aerial perspective from tables or marched, and the sun"
+            }
+            Self::Part(part) => part.summary(),
+        }
+    }
+}
+
 /// Parts with all parts that they require, each once, in an order in which none is used before it is defined.
 pub fn with_required(parts: &[Part]) -> Vec<Part> {
     let mut all = Vec::new();
@@ -135,6 +184,26 @@ mod tests {
                 None => 0,
             };
             assert_eq!(part.requires().len(), named, "{part}");
+        }
+    }
+
+    #[test]
+    fn subjects_and_parts_have_names_of_their_own() {
+        let names: Vec<_> = Subject::ALL.iter().map(|subject| subject.name()).collect();
+        for (k, &name) in names.iter().enumerate() {
+            assert!(!names[..k].contains(&name), "{name}");
+            assert_eq!(Subject::from_name(name), Ok(Subject::ALL[k]));
+        }
+        assert_eq!(names.len(), Part::ALL.len() + 1);
+        assert_eq!(Subject::Part(Part::Fog).parts(), [Part::Fog]);
+        let sky = source(Subject::Sky.parts());
+        for function in [
+            "sky_radiance",
+            "aerial_perspective",
+            "air_march",
+            "sun_disc_radiance",
+        ] {
+            assert!(sky.contains(&format!("fn {function}(")), "{function}");
         }
     }
 

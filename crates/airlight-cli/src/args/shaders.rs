@@ -1,7 +1,7 @@
 //! Options of `airlight shaders`.
 
 use crate::parse;
-use airlight_shaders::{Language, Part};
+use airlight_shaders::{Language, Subject};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -13,9 +13,9 @@ pub struct ShadersArgs {
     #[arg(long, value_name = "LANGUAGE", value_parser = parse::named::<Language>(), default_value_t = Language::Wgsl)]
     pub lang: Language,
 
-    /// Parts to write, with those that they require [default: all]
-    #[arg(long, value_name = "PARTS", value_delimiter = ',', value_parser = parse::named::<Part>())]
-    pub only: Vec<Part>,
+    /// Parts to write, or the subject `sky`, with those that they require [default: all]
+    #[arg(long, value_name = "PARTS", value_delimiter = ',', value_parser = parse::named::<Subject>())]
+    pub only: Vec<Subject>,
 
     /// Folder for the file, which is named `airlight` with the ending of the language, or for the files of SPIR-V; it is made if it does not exist
     #[arg(short, long, value_name = "FOLDER")]
@@ -32,5 +32,5 @@ the functions for rows of a storage buffer, and complete passes: airlight-fog-pa
 
 Examples:
   airlight shaders -o shaders
-  airlight shaders --lang glsl-es300 --only fog,phase -o web/shaders
+  airlight shaders --lang glsl-es300 --only fog,sky -o web/shaders
   airlight shaders --lang spirv --only fog -o vulkan/shaders";

@@ -407,6 +407,17 @@ fn help_and_lists_name_what_there_is() {
     );
     let glsl = std::fs::read_to_string(folder.file("web/shaders/airlight.glsl")).unwrap();
     assert!(glsl.contains("float henyey_greenstein(") && !glsl.contains("uniform_fog"));
+    succeed(&folder, "shaders --only fog,sky -o sky");
+    let wgsl = std::fs::read_to_string(folder.file("sky/airlight.wgsl")).unwrap();
+    for function in [
+        "uniform_fog",
+        "sky_radiance",
+        "air_march",
+        "sun_disc_radiance",
+    ] {
+        assert!(wgsl.contains(&format!("fn {function}(")), "{function}");
+    }
+    assert!(!wgsl.contains("article_sky"));
     succeed(&folder, "shaders --lang spirv --only fog,fog -o vulkan");
     let mut names: Vec<_> = std::fs::read_dir(folder.file("vulkan"))
         .unwrap()
