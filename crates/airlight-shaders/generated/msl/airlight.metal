@@ -192,7 +192,7 @@ constant float SKY_ROWS_ABOVE = 125.0;
 constant float SKY_ROWS_BELOW = 35.0;
 constant float AERIAL_AZIMUTHS = 24.0;
 constant float AERIAL_FIRST_COLUMN = 0.3;
-constant float AERIAL_ROWS_ABOVE = 46.0;
+constant float AERIAL_ROWS_ABOVE = 44.0;
 constant float AERIAL_ROWS_BELOW = 18.0;
 constant float AERIAL_FIRST_ROW = 0.6;
 constant float AERIAL_DISTANCES = 42.0;
@@ -2493,7 +2493,7 @@ float aerial_column_place(
 float aerial_kink_place(
     SkyView view_13
 ) {
-    return metal::rint(view_13.kink_place * 45.0) / 45.0;
+    return metal::rint(view_13.kink_place * 43.0) / 43.0;
 }
 
 // Place from 0 to 1 among the rows of an aerial-perspective table of the place that an elevation has by `row_place`: that of the rays that graze a jump of density is at a row, and rows are dense above it.
@@ -2543,7 +2543,7 @@ float aerial_row_coordinate(
     float _e4 = aerial_row_place(view_16, _e3, is_below_5);
     float rows_2 = is_below_5 ? AERIAL_ROWS_BELOW : AERIAL_ROWS_ABOVE;
     float first_3 = is_below_5 ? AERIAL_ROWS_ABOVE : 0.0;
-    return ((first_3 + 0.5) + (_e4 * (rows_2 - 1.0))) / 64.0;
+    return ((first_3 + 0.5) + (_e4 * (rows_2 - 1.0))) / 62.0;
 }
 
 // Part of the way of a ray through the air at which it first crosses the jump of density nearest to the eye, or if it does not, at which the ray that grazes the jump does; 0 if the ray meets the ground.

@@ -19,7 +19,7 @@ pub const AERIAL_AZIMUTHS: f32 = 24.0;
 /// Width of the first of these columns relative to even ones.
 pub const AERIAL_FIRST_COLUMN: f32 = 0.3;
 /// Rows of an aerial-perspective table from the horizon to the highest elevation; they come first.
-pub const AERIAL_ROWS_ABOVE: f32 = 46.0;
+pub const AERIAL_ROWS_ABOVE: f32 = 44.0;
 /// Rows of an aerial-perspective table from the horizon to the nadir.
 pub const AERIAL_ROWS_BELOW: f32 = 18.0;
 /// Height of the first row above the horizon, or above the rays that graze a jump of density, relative to one of [`row_place`].

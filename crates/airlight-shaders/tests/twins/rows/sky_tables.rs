@@ -176,7 +176,7 @@ fn elevation_of_row(view: &[f64], coordinate: f64, rows: [f64; 2]) -> f64 {
 }
 
 const SKY_ROWS: [f64; 2] = [125.0, 35.0];
-const AERIAL_ROWS: [f64; 2] = [46.0, 18.0];
+const AERIAL_ROWS: [f64; 2] = [44.0, 18.0];
 
 /// Place among the rows of aerial perspective of a place among those of the sky: in both, the rays that graze a jump are at a row.
 fn aerial_place(view: &[f64], place: f64, below: bool) -> f64 {
@@ -199,8 +199,8 @@ fn aerial_kink(view: &[f64]) -> f64 {
 fn aerial_row(view: &[f64], elevation: f64, below: bool) -> f64 {
     let place = aerial_place(view, place(view, elevation, below), below);
     match below {
-        true => (46.5 + 17.0 * place) / 64.0,
-        false => (0.5 + 45.0 * place) / 64.0,
+        true => (44.5 + 17.0 * place) / 62.0,
+        false => (0.5 + 43.0 * place) / 62.0,
     }
 }
 
