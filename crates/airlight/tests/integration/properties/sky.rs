@@ -91,7 +91,7 @@ static SKIES: LazyLock<Vec<Prepared>> = LazyLock::new(|| {
 /// Number of random airs among the skies.
 const RANDOM_AIRS: u64 = 12;
 
-/// Air of the Earth or none, with up to three constituents of any profile, each of an optical depth of up to 2.
+/// Air of the Earth or none, with constituents of any profile, each of an optical depth of up to 2: at most six in all.
 fn random_air(draw: &mut Draw) -> Atmosphere {
     let base = draw.pick(&["clear", "none"]);
     let mut air = Atmosphere::from_toml(&format!("base = \"{base}\"")).unwrap();
