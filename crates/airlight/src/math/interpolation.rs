@@ -109,15 +109,23 @@ pub fn bilinear(u: f64, v: f64, [columns, rows]: [usize; 2]) -> [(usize, f32); 4
     ]
 }
 
+/// A whole number from 0 to 2^23 - 1 as an integer. Without the checks of `as`, loops over many run in vector registers.
+#[inline(always)]
+pub fn whole(number: f32) -> i32 {
+    /// From here on, single precision has whole numbers only, and their last bits count them.
+    const FIRST: f32 = (1 << 23) as f32;
+    ((number + FIRST).to_bits() - FIRST.to_bits()) as i32
+}
+
 /// Weights of cubic Lagrange interpolation among four nodes with spacing 1, at `t` from the first.
 #[inline(always)]
 pub fn cubic_weights<T: Real>(t: T) -> [T; 4] {
     let (a, b, c, d) = (t, t - T::of(1.0), t - T::of(2.0), t - T::of(3.0));
     [
-        -b * c * d / T::of(6.0),
-        a * c * d / T::of(2.0),
-        -a * b * d / T::of(2.0),
-        a * b * c / T::of(6.0),
+        -b * c * d * T::of(1.0 / 6.0),
+        a * c * d * T::of(0.5),
+        -a * b * d * T::of(0.5),
+        a * b * c * T::of(1.0 / 6.0),
     ]
 }
 

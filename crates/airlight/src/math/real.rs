@@ -18,6 +18,14 @@ pub(crate) trait Real:
     fn of(value: f64) -> Self;
     /// Conversion to `f64`.
     fn to_f64(self) -> f64;
+    /// Magnitude.
+    fn abs(self) -> Self;
+    /// The magnitude with the sign of another number.
+    fn copysign(self, sign: Self) -> Self;
+    /// The greater of two numbers.
+    fn max(self, other: Self) -> Self;
+    /// The number from `low` to `high` that is nearest.
+    fn clamp(self, low: Self, high: Self) -> Self;
     /// Square root.
     fn sqrt(self) -> Self;
     /// Exponential.
@@ -40,6 +48,22 @@ macro_rules! real {
             #[inline(always)]
             fn to_f64(self) -> f64 {
                 self.into()
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                self.abs()
+            }
+            #[inline(always)]
+            fn copysign(self, sign: Self) -> Self {
+                self.copysign(sign)
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                self.max(other)
+            }
+            #[inline(always)]
+            fn clamp(self, low: Self, high: Self) -> Self {
+                self.clamp(low, high)
             }
             #[inline(always)]
             fn sqrt(self) -> Self {

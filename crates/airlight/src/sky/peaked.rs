@@ -53,13 +53,36 @@ pub(crate) struct SamplePlace {
     fraction: f32,
 }
 
-impl SamplePlace {
-    /// The place of forward scattering.
+/// Places of several angles.
+pub(crate) struct SamplePlaces<const N: usize> {
+    below: [i32; N],
+    fractions: [f32; N],
+}
+
+impl<const N: usize> SamplePlaces<N> {
+    /// The places of forward scattering.
     pub const FORWARDS: Self = Self {
-        below: 0,
-        fraction: 0.0,
+        below: [0; N],
+        fractions: [0.0; N],
     };
 
+    /// Sets the place of an angle.
+    #[inline(always)]
+    pub fn set(&mut self, index: usize, angle: HalfAngle<f32>) {
+        (self.below[index], self.fractions[index]) = angle.among(SAMPLES);
+    }
+
+    /// The place at an index.
+    #[inline(always)]
+    pub fn get(&self, index: usize) -> SamplePlace {
+        SamplePlace {
+            below: self.below[index],
+            fraction: self.fractions[index],
+        }
+    }
+}
+
+impl SamplePlace {
     /// The place of an angle.
     #[inline(always)]
     pub fn of(angle: HalfAngle<f32>) -> Self {

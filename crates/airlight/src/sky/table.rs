@@ -5,20 +5,22 @@
 //! tabulated: light singly scattered by a constituent with a peaked phase function is stored without the phase function, which is
 //! applied for each pixel.
 
-use super::peaked::{Between, Peaked, SamplePlace};
+use super::peaked::{Between, Peaked, SamplePlace, SamplePlaces};
 use super::table_coordinates::TableCoordinates;
 use crate::axes;
 use crate::debug::debug_fields;
 use crate::math::arctangent::arctangent;
-use crate::math::interpolation::cubic_weights;
+use crate::math::interpolation::{cubic_weights, whole};
 use crate::math::parallel;
+use crate::math::real::Real;
 use crate::math::rings::rings;
 use crate::math::simd::vectorized;
 use crate::math::slices::check_length;
-use crate::spectrum::RgbSpace;
+use crate::spectrum::{RgbSpace, Spectrum};
 use crate::transfer::residual::HalfAngle;
 use glam::{DVec3, Vec4};
-use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI};
+use std::f32::consts::FRAC_1_PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Channels of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,9 +43,6 @@ const COLUMNS: usize = AZIMUTHS + 3;
 
 /// Number of directions or pixels that are looked up together.
 const TOGETHER: usize = 64;
-
-/// Widest cell that is interpolated without allocation: 16 wavelengths and one peaked scatterer.
-const SMALL_WIDTH: usize = 64;
 
 /// Table of a view's radiance in all directions, without the sun's disc.
 pub struct SkyTable {
@@ -114,7 +113,54 @@ struct Places<const N: usize> {
     rows: Cubics<N>,
     columns: Cubics<N>,
     /// Angles from the sun.
-    angles: [SamplePlace; N],
+    angles: SamplePlaces<N>,
+}
+
+/// A sum of weighted cells.
+trait Cell: Clone {
+    /// Its values.
+    fn values(&self) -> &[f32];
+    /// Sets all values to 0.
+    fn clear(&mut self);
+    /// Adds the first values of a slice, times a weight.
+    fn add(&mut self, values: &[f32], weight: f32);
+}
+
+/// A cell of a fixed width, which stays in registers.
+impl<const WIDTH: usize> Cell for Spectrum<WIDTH> {
+    #[inline(always)]
+    fn values(&self) -> &[f32] {
+        &self.0
+    }
+
+    #[inline(always)]
+    fn clear(&mut self) {
+        *self = Self::ZERO;
+    }
+
+    #[inline(always)]
+    fn add(&mut self, values: &[f32], weight: f32) {
+        let values = values.first_chunk().expect("a whole cell");
+        *self = self.scale_acc(Self(*values), weight);
+    }
+}
+
+/// A cell of any width.
+impl Cell for Vec<f32> {
+    fn values(&self) -> &[f32] {
+        self
+    }
+
+    fn clear(&mut self) {
+        self.fill(0.0);
+    }
+
+    #[inline(always)]
+    fn add(&mut self, values: &[f32], weight: f32) {
+        for (sum, value) in self.iter_mut().zip(values) {
+            *sum += weight * value;
+        }
+    }
 }
 
 impl Band {
@@ -131,44 +177,48 @@ impl Band {
 }
 
 impl Rows {
-    /// Place of an elevation, rad, among the rows of its side of the horizon.
+    /// Place of an angle above the horizon, negative below it, rad, among the rows of its side of the horizon.
     #[inline(always)]
-    fn place(&self, elevation: f64) -> f64 {
-        let is_below = elevation < self.coordinates.horizon_rad;
+    fn place<T: Real>(&self, angle: T) -> T {
+        let is_below = angle < T::of(0.0);
         match self.below_kink {
-            Some(_) => self.coordinates.row_place(elevation, is_below),
-            None => self.coordinates.row_place_beyond_kink(elevation, is_below),
+            Some(_) => self.coordinates.row_place_of_angle(angle, is_below),
+            None => self.coordinates.row_place_beyond_kink(angle, is_below),
         }
     }
 
-    /// Interpolates rows at an elevation, rad, of a place among the rows of its side of the horizon; nothing above the atmosphere's limb.
+    /// Interpolates rows at an angle above the horizon, rad, of a place among the rows of its side of it; nothing above the atmosphere's
+    /// limb.
     #[inline(always)]
-    fn set<const N: usize>(&self, rows: &mut Cubics<N>, index: usize, elevation: f64, place: f64) {
-        /// Rounding of elevations, rad.
-        const ROUNDING: f64 = 1e-13;
-        let at_zero = self.in_band(elevation, |band| band.at_zero);
-        let per_place = self.in_band(elevation, |band| band.per_place);
-        let first = self.in_band(elevation, |band| band.first);
-        let last = self.in_band(elevation, |band| band.last);
-        rows.set(index, at_zero + place * per_place, [first, last]);
-        let is_in_air = elevation <= self.coordinates.highest_rad + ROUNDING;
+    fn set<const N: usize, T: Real>(&self, rows: &mut Cubics<N>, index: usize, angle: T, place: T) {
+        /// Rounding of angles in single precision, rad.
+        const ROUNDING: f64 = 3e-7;
+        let at_zero = self.in_band(angle, |band| band.at_zero);
+        let per_place = self.in_band(angle, |band| band.per_place);
+        let ends = [
+            self.in_band(angle, |band| band.first),
+            self.in_band(angle, |band| band.last),
+        ];
+        rows.set(index, at_zero + place * per_place, ends);
+        let of = &self.coordinates;
+        let is_in_air = angle <= T::of(of.highest_rad - of.horizon_rad + ROUNDING);
         for weights in &mut rows.weights {
             weights[index] = if is_in_air { weights[index] } else { 0.0 };
         }
     }
 
-    /// A value of the band of an elevation, rad.
+    /// A value of the band of an angle above the horizon, rad.
     #[inline(always)]
-    fn in_band(&self, elevation: f64, value: impl Fn(&Band) -> f64) -> f64 {
+    fn in_band<T: Real>(&self, angle: T, value: impl Fn(&Band) -> f64) -> T {
         let of = &self.coordinates;
         let of_kink = self.below_kink.as_ref().map_or(0.0, &value);
-        if elevation < of.horizon_rad {
+        T::of(if angle < T::of(0.0) {
             value(&self.below)
-        } else if elevation < of.kink_rad {
+        } else if angle < T::of(of.kink_rad - of.horizon_rad) {
             of_kink
         } else {
             value(&self.above)
-        }
+        })
     }
 }
 
@@ -180,12 +230,13 @@ impl<const N: usize> Cubics<N> {
 
     /// Interpolates at a position from the node `first` to the node `last`, by the four nodes nearest to it among them.
     #[inline(always)]
-    fn set(&mut self, index: usize, position: f64, [first, last]: [f64; 2]) {
-        let position = position.clamp(first, last);
-        let node = (position.floor() - 1.0).clamp(first, last - 3.0);
-        // Conversions from single precision run in vector registers.
-        self.first[index] = node as f32 as i32;
-        let weights = cubic_weights((position - node) as f32);
+    fn set<T: Real>(&mut self, index: usize, position: T, ends: [T; 2]) {
+        let [position, first, last] = [position, ends[0], ends[1]].map(|of| of.to_f64() as f32);
+        // Not `clamp`, whose check of the limits keeps loops out of vector registers.
+        let position = position.max(first).min(last);
+        let node = (position.floor() - 1.0).max(first).min(last - 3.0);
+        self.first[index] = whole(node);
+        let weights = cubic_weights(position - node);
         for (all, weight) in self.weights.iter_mut().zip(weights) {
             all[index] = weight;
         }
@@ -193,9 +244,9 @@ impl<const N: usize> Cubics<N> {
 
     /// Interpolates at the place of a column.
     #[inline(always)]
-    fn set_column(&mut self, index: usize, place: f64) {
-        let position = 1.0 + place * AZIMUTHS as f64;
-        self.set(index, position, [0.0, (COLUMNS - 1) as f64]);
+    fn set_column(&mut self, index: usize, place: f32) {
+        let position = 1.0 + place * AZIMUTHS as f32;
+        self.set(index, position, [0.0, (COLUMNS - 1) as f32]);
     }
 
     /// Index of the first of the four, and their weights.
@@ -274,49 +325,43 @@ impl SkyTable {
         let places = self.places(directions);
         // Cells of a fixed width stay in registers.
         match (self.width, self.channels) {
-            (4, 3) => self.look_up_cells(&places, &mut [0.0; 16], 3, out),
-            (8, 3) => self.look_up_cells(&places, &mut [0.0; 32], 3, out),
-            (16, 3) => self.look_up_cells(&places, &mut [0.0; 64], 3, out),
-            (28, 3) => self.look_up_cells(&places, &mut [0.0; 112], 3, out),
-            (width, channels) if width <= SMALL_WIDTH => {
-                let mut small = [0.0; 4 * SMALL_WIDTH];
-                self.look_up_cells(&places, &mut small[..4 * width], channels, out);
-            }
-            (width, channels) => {
-                self.look_up_cells(&places, &mut vec![0.0; 4 * width], channels, out);
-            }
+            (4, 3) => self.look_up_cells(&places, Spectrum::<4>::ZERO, 3, out),
+            (8, 3) => self.look_up_cells(&places, Spectrum::<8>::ZERO, 3, out),
+            (16, 3) => self.look_up_cells(&places, Spectrum::<16>::ZERO, 3, out),
+            (28, 3) => self.look_up_cells(&places, Spectrum::<28>::ZERO, 3, out),
+            (width, channels) => self.look_up_cells(&places, vec![0.0; width], channels, out),
         }
     }
 
-    /// The radiance at places, with the four cells at each interpolated between rows in `cells`.
+    /// The radiance at places, each interpolated in a cell like `cell`.
     #[inline(always)]
     fn look_up_cells<const N: usize>(
         &self,
         places: &Places<N>,
-        cells: &mut [f32],
+        cell: impl Cell,
         channels: usize,
         out: &mut [f32],
     ) {
-        for (i, out) in out.chunks_exact_mut(channels).enumerate() {
-            let column_weights = self.interpolate_rows(places, i, cells);
-            let factors = self.peaked.factors_at(places.angles[i]);
-            self.combine(cells, column_weights, factors, &mut out[..channels]);
+        // In loops of their own, interpolated cells fill the widest registers, not those of the four values that are combined.
+        let mut cells: [_; N] = std::array::from_fn(|_| cell.clone());
+        for (i, cell) in cells.iter_mut().enumerate() {
+            self.interpolate(places, i, cell);
+        }
+        for (i, (cell, out)) in cells.iter().zip(out.chunks_exact_mut(channels)).enumerate() {
+            self.combine(cell.values(), places.angles.get(i), out);
         }
     }
 
     /// Values along the unit vector `direction`, first of the smooth light, then of each part without its factor, `[part][channel]`; 0
     /// above the atmosphere's limb.
     pub(super) fn parts(&self, direction: DVec3) -> Vec<f32> {
-        let mut cells = vec![0.0; 4 * self.width];
-        let weights = self.interpolate_rows(&self.places(&[direction]), 0, &mut cells);
-        let in_part = |first: usize| {
-            let groups = (first..first + self.channels).step_by(4);
-            let values =
-                groups.flat_map(|first| between_columns(&cells, weights, first).to_array());
-            values.take(self.channels).collect::<Vec<_>>()
-        };
-        let parts = (0..self.width).step_by(self.peaked.width);
-        parts.flat_map(in_part).collect()
+        let mut cell = vec![0.0; self.width];
+        self.interpolate(&self.places(&[direction]), 0, &mut cell);
+        let parts = cell.chunks_exact(self.peaked.width);
+        parts
+            .flat_map(|part| &part[..self.channels])
+            .copied()
+            .collect()
     }
 
     /// The places of directions in the table.
@@ -325,50 +370,71 @@ impl SkyTable {
         let DVec3 {
             x: sun_x, z: sun_z, ..
         } = self.sun_azimuth;
-        let (mut elevations, mut rows, mut columns) = ([0.0; N], [0.0; N], [0.0; N]);
         let mut places = Places {
             rows: Cubics::NONE,
             columns: Cubics::NONE,
-            angles: [SamplePlace::FORWARDS; N],
+            angles: SamplePlaces::FORWARDS,
         };
+        // Twice as many numbers of single precision fit in a vector register.
+        let [mut up, mut along, mut across] = [[0.0f32; N]; 3];
+        let mut half_angles = [HalfAngle::FORWARDS; N];
         for (i, &direction) in directions.iter().enumerate() {
             let DVec3 { x, y, z } = direction;
-            let horizontal = (x * x + z * z).sqrt();
-            let (along, across) = (x * sun_x + z * sun_z, x * sun_z - z * sun_x);
-            elevations[i] = arctangent(y, horizontal, (x * x + y * y + z * z).sqrt());
-            columns[i] = arctangent(across.abs(), along, horizontal) * FRAC_1_PI;
-            places.angles[i] = SamplePlace::of(HalfAngle::between(direction, self.sun));
+            up[i] = y as f32;
+            along[i] = (x * sun_x + z * sun_z) as f32;
+            across[i] = (x * sun_z - z * sun_x) as f32;
+            half_angles[i] = HalfAngle::between(direction, self.sun);
         }
         // A copy stays in registers.
         let of = self.rows;
-        for (row, &elevation) in rows.iter_mut().zip(&elevations) {
-            *row = of.place(elevation);
+        let (sin, cos) = of.coordinates.horizon_rad.sin_cos();
+        let (sin, cos) = (sin as f32, cos as f32);
+        let [mut angles, mut rows, mut columns] = [[0.0f32; N]; 3];
+        for i in 0..N {
+            let horizontal2 = along[i] * along[i] + across[i] * across[i];
+            let (horizontal, norm) = (horizontal2.sqrt(), (horizontal2 + up[i] * up[i]).sqrt());
+            // Angles above the horizon, without the rounding of elevations.
+            let (y, x) = (
+                up[i] * cos - horizontal * sin,
+                horizontal * cos + up[i] * sin,
+            );
+            angles[i] = arctangent(y, x, norm);
+            columns[i] = arctangent(across[i].abs(), along[i], horizontal) * FRAC_1_PI;
+        }
+        for (row, &angle) in rows.iter_mut().zip(&angles) {
+            *row = of.place(angle);
         }
         if of.coordinates.dense_share > 0.0 {
             for column in &mut columns {
-                *column = of.coordinates.column_place(*column);
+                *column = of.coordinates.column_place_of(*column);
             }
         }
         for i in 0..N {
-            of.set(&mut places.rows, i, elevations[i], rows[i]);
+            of.set(&mut places.rows, i, angles[i], rows[i]);
         }
         for (i, &column) in columns.iter().enumerate() {
             places.columns.set_column(i, column);
         }
+        for (i, &angle) in half_angles.iter().enumerate() {
+            places.angles.set(i, angle);
+        }
         places
     }
 
-    /// Interpolates between rows the cells of the four columns of a place into `cells`; returns the weights of the columns.
+    /// Interpolates the cell of a place.
     #[inline(always)]
-    fn interpolate_rows<const N: usize>(
-        &self,
-        places: &Places<N>,
-        index: usize,
-        cells: &mut [f32],
-    ) -> [f32; 4] {
+    fn interpolate<const N: usize>(&self, places: &Places<N>, index: usize, cell: &mut impl Cell) {
+        let (first_row, row_weights) = places.rows.get(index);
         let (first_column, column_weights) = places.columns.get(index);
-        self.between_rows(places.rows.get(index), first_column, cells);
-        column_weights
+        let width = cell.values().len();
+        let (stride, first) = (COLUMNS * width, first_column * width);
+        cell.clear();
+        for (row, row_weight) in row_weights.into_iter().enumerate() {
+            let cells = &self.values[(first_row + row) * stride + first..][..4 * width];
+            for (column, column_weight) in column_weights.into_iter().enumerate() {
+                cell.add(&cells[column * width..], row_weight * column_weight);
+            }
+        }
     }
 
     /// Interpolates cells of neighbouring columns, from one on, between four rows.
@@ -390,17 +456,17 @@ impl SkyTable {
         }
     }
 
-    /// Interpolates the four cells of neighbouring columns, applies the phase functions and sums the parts.
+    /// Applies the phase functions at an angle to the parts of a cell and sums them.
     #[inline(always)]
-    fn combine(&self, cells: &[f32], weights: [f32; 4], factors: Between<'_>, out: &mut [f32]) {
+    fn combine(&self, cell: &[f32], angle: SamplePlace, out: &mut [f32]) {
+        let factors = self.peaked.factors_at(angle);
         if let [red, green, blue] = out {
-            let sum = self.sum_of_parts((cells, 4), weights, factors, 0);
+            let sum = self.sum_of_parts(cell, 4, factors, 0);
             [*red, *green, *blue, _] = sum.to_array();
             return;
         }
         for (group, out) in out.chunks_mut(4).enumerate() {
-            let cells = (cells, self.peaked.width);
-            let sum = self.sum_of_parts(cells, weights, factors, 4 * group);
+            let sum = self.sum_of_parts(cell, self.peaked.width, factors, 4 * group);
             out.copy_from_slice(&sum.to_array()[..out.len()]);
         }
     }
@@ -409,14 +475,15 @@ impl SkyTable {
     #[inline(always)]
     fn sum_of_parts(
         &self,
-        (cells, part_width): (&[f32], usize),
-        weights: [f32; 4],
+        cell: &[f32],
+        part_width: usize,
         factors: Between<'_>,
         first: usize,
     ) -> Vec4 {
-        let mut sum = between_columns(cells, weights, first);
-        for part in 1..cells.len() / 4 / part_width {
-            let light = between_columns(cells, weights, part * part_width + first);
+        let four = |first: usize| Vec4::from_slice(&cell[first..]);
+        let mut sum = four(first);
+        for part in 1..cell.len() / part_width {
+            let light = four(part * part_width + first);
             sum += light * factors.four((part - 1) * part_width + first);
         }
         // Cubics undershoot where the light ends, such as at the top of the air; other channels may be negative.
@@ -441,7 +508,7 @@ impl SkyTable {
                     .rows
                     .coordinates
                     .column_place(sin.abs().atan2(cos) / PI);
-                group.columns.set_column(i, place);
+                group.columns.set_column(i, place as f32);
                 let (sin, cos) = (0.5 * azimuth).sin_cos();
                 group.half_sines2[i] = (sin * sin) as f32;
                 group.half_cosines2[i] = (cos * cos) as f32;
@@ -460,11 +527,13 @@ impl SkyTable {
             || {
                 let row = (elevation_rad, &self.row(elevation_rad)[..]);
                 match (self.width, self.channels) {
-                    (4, 3) => self.draw_cells(row, columns, (4, 3), out),
-                    (8, 3) => self.draw_cells(row, columns, (8, 3), out),
-                    (16, 3) => self.draw_cells(row, columns, (16, 3), out),
-                    (28, 3) => self.draw_cells(row, columns, (28, 3), out),
-                    widths => self.draw_cells(row, columns, widths, out),
+                    (4, 3) => self.draw_cells(row, columns, Spectrum::<4>::ZERO, 3, out),
+                    (8, 3) => self.draw_cells(row, columns, Spectrum::<8>::ZERO, 3, out),
+                    (16, 3) => self.draw_cells(row, columns, Spectrum::<16>::ZERO, 3, out),
+                    (28, 3) => self.draw_cells(row, columns, Spectrum::<28>::ZERO, 3, out),
+                    (width, channels) => {
+                        self.draw_cells(row, columns, vec![0.0; width], channels, out)
+                    }
                 }
             },
         );
@@ -474,42 +543,47 @@ impl SkyTable {
     #[inline(always)]
     fn row(&self, elevation: f64) -> Vec<f32> {
         let mut rows = Cubics::<1>::NONE;
-        let place = self.rows.place(elevation);
-        self.rows.set(&mut rows, 0, elevation, place);
+        let angle = elevation - self.rows.coordinates.horizon_rad;
+        self.rows.set(&mut rows, 0, angle, self.rows.place(angle));
         let mut cells = vec![0.0; COLUMNS * self.width];
         self.between_rows(rows.get(0), 0, &mut cells);
         cells
     }
 
-    /// Evaluates the columns of a picture in a row of cells of `width` values at an elevation, rad.
+    /// Evaluates the columns of a picture in a row of cells at an elevation, rad; `cell` is that of a column.
     #[inline(always)]
     fn draw_cells(
         &self,
         (elevation, cells): (f64, &[f32]),
         columns: &SkyColumns,
-        (width, channels): (usize, usize),
+        mut cell: impl Cell,
+        channels: usize,
         out: &mut [f32],
     ) {
+        let width = cell.values().len();
         // Half the angle to the sun: its squared sine and cosine are sums of positive terms.
         let sun = axes::elevation_rad(self.sun);
         let across = (elevation.cos() * sun.cos()) as f32;
         let between = (0.5 * (elevation - sun)).sin().powi(2) as f32;
         let opposite = (0.5 * (elevation + sun)).sin().powi(2) as f32;
-        let mut angles = [SamplePlace::FORWARDS; TOGETHER];
+        let mut angles = SamplePlaces::<TOGETHER>::FORWARDS;
         let groups = out.chunks_mut(TOGETHER * channels);
         for (group, out) in columns.groups.iter().zip(groups) {
             let half_azimuths = group.half_sines2.iter().zip(&group.half_cosines2);
-            for (angle, (sine2, cosine2)) in angles.iter_mut().zip(half_azimuths) {
-                *angle = SamplePlace::of(HalfAngle {
+            for (i, (sine2, cosine2)) in half_azimuths.enumerate() {
+                let angle = HalfAngle {
                     sine2: between + across * sine2,
                     cosine2: opposite + across * cosine2,
-                });
+                };
+                angles.set(i, angle);
             }
             for (i, out) in out.chunks_exact_mut(channels).enumerate() {
                 let (first, weights) = group.columns.get(i);
-                let cells = &cells[first * width..][..4 * width];
-                let factors = self.peaked.factors_at(angles[i]);
-                self.combine(cells, weights, factors, &mut out[..channels]);
+                cell.clear();
+                for (column, weight) in weights.into_iter().enumerate() {
+                    cell.add(&cells[(first + column) * width..], weight);
+                }
+                self.combine(cell.values(), angles.get(i), out);
             }
         }
     }
@@ -585,17 +659,6 @@ impl SkyTable {
     }
 }
 
-/// Four values of a cell, from an index on, interpolated between the cells of four neighbouring columns.
-#[inline(always)]
-fn between_columns(cells: &[f32], weights: [f32; 4], first: usize) -> Vec4 {
-    let width = cells.len() / 4;
-    let mut sum = Vec4::ZERO;
-    for (k, weight) in weights.into_iter().enumerate() {
-        sum += weight * Vec4::from_slice(&cells[k * width + first..]);
-    }
-    sum
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -610,7 +673,7 @@ mod tests {
         assert_eq!(mirrored.len(), COLUMNS);
         for place in [0.0, 0.004, 0.5, 0.993, 1.0] {
             let mut columns = Cubics::<1>::NONE;
-            columns.set_column(0, place);
+            columns.set_column(0, place as f32);
             let (first, weights) = columns.get(0);
             let terms = weights.iter().zip(&mirrored[first..]).map(|(w, v)| w * v);
             let (got, exact) = (terms.sum::<f32>(), (PI * place).cos() as f32);

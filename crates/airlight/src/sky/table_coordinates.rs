@@ -11,6 +11,7 @@
 use super::view::View;
 use crate::axes;
 use crate::math::arctangent::arctangent;
+use crate::math::real::Real;
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, PI};
 
 /// Places of rows and columns in tables of the light of a view, by elevation and by azimuth from the sun: from 0 in the first to 1 in the
@@ -89,31 +90,41 @@ impl TableCoordinates {
     }
 
     /// Place of an elevation (rad) among the rows above or below the horizon.
-    #[inline(always)]
     pub fn row_place(&self, elevation_rad: f64, is_below: bool) -> f64 {
-        if is_below || elevation_rad >= self.kink_rad {
-            return self.row_place_beyond_kink(elevation_rad, is_below);
-        }
-        let part = (elevation_rad - self.horizon_rad) / (self.kink_rad - self.horizon_rad);
-        let part = part.clamp(0.0, 1.0);
-        self.kink_place * FRAC_2_PI * arctangent(part.sqrt(), (1.0 - part).sqrt(), 1.0)
+        self.row_place_of_angle(elevation_rad - self.horizon_rad, is_below)
     }
 
-    /// [`TableCoordinates::row_place`] other than between the horizon and the kink, without branches: loops over many elevations run in
-    /// vector registers.
+    /// [`TableCoordinates::row_place`] of an angle above the horizon, negative below it, rad.
     #[inline(always)]
-    pub(super) fn row_place_beyond_kink(&self, elevation_rad: f64, is_below: bool) -> f64 {
-        let (from, to) = match is_below {
-            true => (self.horizon_rad, -FRAC_PI_2),
-            false => (self.kink_rad, self.highest_rad),
-        };
-        let root = ((elevation_rad - from) / (to - from))
-            .clamp(0.0, 1.0)
-            .sqrt();
+    pub(super) fn row_place_of_angle<T: Real>(&self, angle: T, is_below: bool) -> T {
+        let kink = T::of(self.kink_rad - self.horizon_rad);
+        if is_below || angle >= kink {
+            return self.row_place_beyond_kink(angle, is_below);
+        }
+        let part = (angle / kink).clamp(T::of(0.0), T::of(1.0));
+        let angle = arctangent(part.sqrt(), (T::of(1.0) - part).sqrt(), T::of(1.0));
+        T::of(self.kink_place * FRAC_2_PI) * angle
+    }
+
+    /// [`TableCoordinates::row_place_of_angle`] other than between the horizon and the kink, without branches: loops over many angles
+    /// run in vector registers.
+    #[inline(always)]
+    pub(super) fn row_place_beyond_kink<T: Real>(&self, angle: T, is_below: bool) -> T {
+        let [kink, highest, nadir] =
+            [self.kink_rad, self.highest_rad, -FRAC_PI_2].map(|end| end - self.horizon_rad);
+        let [from, per_rad] = match is_below {
+            true => [0.0, 1.0 / nadir],
+            false => [kink, 1.0 / (highest - kink)],
+        }
+        .map(T::of);
+        let part = ((angle - from) * per_rad).clamp(T::of(0.0), T::of(1.0));
+        let root = part.sqrt();
         let below = root.sqrt();
+        let [even, uneven] = [self.even_below, 1.0 - self.even_below].map(T::of);
+        let [at_kink, beyond] = [self.kink_place, 1.0 - self.kink_place].map(T::of);
         match is_below {
-            true => below * (1.0 - self.even_below + self.even_below * below),
-            false => self.kink_place + (1.0 - self.kink_place) * root,
+            true => below * (uneven + even * below),
+            false => at_kink + beyond * root,
         }
     }
 
@@ -142,20 +153,26 @@ impl TableCoordinates {
     }
 
     /// Place of an azimuth from the sun among the columns; azimuths are in half turns.
-    #[inline(always)]
     pub fn column_place(&self, azimuth: f64) -> f64 {
+        self.column_place_of(azimuth)
+    }
+
+    /// [`TableCoordinates::column_place`] in the precision of the azimuth.
+    #[inline(always)]
+    pub(super) fn column_place_of<T: Real>(&self, azimuth: T) -> T {
         if self.dense_share == 0.0 {
             return azimuth;
         }
         let [first, last] = [0.0, 1.0].map(|end| self.dense(end));
-        let dense = (self.dense(azimuth) - first) / (last - first);
-        azimuth + self.dense_share * (dense - azimuth)
+        let dense = (self.dense(azimuth) - T::of(first)) * T::of(1.0 / (last - first));
+        azimuth + T::of(self.dense_share) * (dense - azimuth)
     }
 
     #[inline(always)]
-    fn dense(&self, azimuth: f64) -> f64 {
-        let widths = (azimuth - self.dense_azimuth) / self.dense_width;
-        arctangent(widths, 1.0, (1.0 + widths * widths).sqrt())
+    fn dense<T: Real>(&self, azimuth: T) -> T {
+        let one = T::of(1.0);
+        let widths = (azimuth - T::of(self.dense_azimuth)) * T::of(1.0 / self.dense_width);
+        arctangent(widths, one, (one + widths * widths).sqrt())
     }
 
     /// Inverse of [`TableCoordinates::column_place`], by bisection.

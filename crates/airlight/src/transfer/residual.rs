@@ -25,7 +25,7 @@
 
 use super::delta_m::peak_fraction;
 use crate::math::exponentials::count_exponentials;
-use crate::math::interpolation::{Place, lerp};
+use crate::math::interpolation::{Place, lerp, whole};
 use crate::math::parallel;
 use crate::math::real::Real;
 use crate::math::simd::vectorized;
@@ -133,13 +133,19 @@ impl<T: Real> HalfAngle<T> {
 }
 
 impl HalfAngle<f32> {
+    /// No angle.
+    pub const FORWARDS: Self = Self {
+        sine2: 0.0,
+        cosine2: 1.0,
+    };
+
     /// Interval that contains the angle, of a number of even ones in [`HalfAngle::coordinate`], and the part of it below the angle. Without
     /// branches: loops over many angles run in vector registers.
     #[inline(always)]
     pub fn among(self, intervals: usize) -> (i32, f32) {
-        let position = self.coordinate().clamp(0.0, 1.0) * intervals as f32;
-        let below = (position as i32).min(intervals as i32 - 1);
-        (below, position - below as f32)
+        let position = self.coordinate().max(0.0).min(1.0) * intervals as f32;
+        let below = position.floor().min(intervals as f32 - 1.0);
+        (whole(below), position - below)
     }
 }
 
