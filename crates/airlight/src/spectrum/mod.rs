@@ -11,6 +11,7 @@ mod colour_cost;
 mod curve;
 pub mod difference;
 mod grid;
+mod interpolant;
 mod lanes;
 pub mod rgb;
 pub mod solar;

@@ -1,19 +1,18 @@
 //! What the default wavelengths cost in the colour of solved skies.
 
-use airlight::atmosphere::presets;
+use airlight::atmosphere::Preset;
 use airlight::axes::direction;
 use airlight::sky::{Sky, SkySettings, SunCoverage};
 use airlight::spectrum::WavelengthGrid;
 use airlight::spectrum::difference::{D65_WHITE, ciede2000, xyz_to_lab};
 
 /// Colours (CIE XYZ) of the sun, where it has not set, and of the sky in six directions.
-fn colours(grid: &WavelengthGrid, sun_elevation_deg: f64) -> Vec<[f64; 3]> {
+fn colours(air: Preset, grid: &WavelengthGrid, sun_elevation_deg: f64) -> Vec<[f64; 3]> {
     let settings = SkySettings {
         suns: SunCoverage::near(sun_elevation_deg, 0.0),
         ..Default::default()
     };
-    let air = presets::preset("average").unwrap();
-    let sky = Sky::prepare(&air, grid, &settings).unwrap();
+    let sky = Sky::prepare(&air.atmosphere(), grid, &settings).unwrap();
     let view = sky.view(0.0, direction(180.0, sun_elevation_deg));
     let eyes = [
         (180.0, 90.0),
@@ -43,33 +42,44 @@ fn difference(reference: [f64; 3], other: [f64; 3]) -> f64 {
 /// 5 nm, whose colours are those of 1 nm within a CIEDE2000 of 0.03.
 #[test]
 fn the_default_wavelengths_give_the_colours_of_five_nanometres() {
-    compare_colours(&"fine".parse().unwrap(), &[10.0], [0.5, 1.0]);
+    compare_colours(Preset::Average, &WavelengthGrid::fine(), &[10.0], 0.1);
 }
 
 #[test]
 #[ignore = "takes a minute"]
 fn the_default_wavelengths_give_the_colours_of_one_nanometre() {
     compare_colours(
+        Preset::Average,
         &WavelengthGrid::one_nanometre(),
         &[60.0, 10.0, 2.0],
-        [0.5, 1.0],
+        0.1,
     );
 }
 
 #[test]
 #[ignore = "takes half a minute: prints the errors that the book states"]
 fn few_wavelengths_keep_the_colours_of_twilight() {
-    let fine = "fine".parse().unwrap();
-    compare_colours(&fine, &[-2.0, -4.0, -6.0], [0.2, 0.5]);
-    compare_colours(&fine, &[-9.0, -12.0, -18.0], [0.3, 0.6]);
+    let fine = WavelengthGrid::fine();
+    compare_colours(Preset::Average, &fine, &[-2.0, -4.0, -6.0], 0.15);
+    compare_colours(Preset::Average, &fine, &[-9.0, -12.0, -18.0], 0.25);
 }
 
-/// Compares the colours of the grids `standard` and `fast` with those of a dense one, within bounds.
-fn compare_colours(dense: &WavelengthGrid, sun_elevations_deg: &[f64], bounds: [f64; 2]) {
+#[test]
+#[ignore = "takes half a minute: prints the errors that the book states"]
+fn few_wavelengths_keep_the_colours_of_other_airs() {
+    let fine = WavelengthGrid::fine();
+    for air in [Preset::Clear, Preset::Hazy, Preset::Wildfire, Preset::Mars] {
+        compare_colours(air, &fine, &[30.0, 2.0], 0.2);
+        compare_colours(air, &fine, &[-4.0], 0.25);
+    }
+}
+
+/// Compares the colours of the grids `standard` and `fast` with those of a dense one, within a CIEDE2000.
+fn compare_colours(air: Preset, dense: &WavelengthGrid, sun_elevations_deg: &[f64], bound: f64) {
     for &elevation in sun_elevations_deg {
-        let exact = colours(dense, elevation);
-        for (name, allowed) in [("fine", 0.03), ("standard", bounds[0]), ("fast", bounds[1])] {
-            let got = colours(&name.parse::<WavelengthGrid>().unwrap(), elevation);
+        let exact = colours(air, dense, elevation);
+        for (name, allowed) in [("fine", 0.03), ("standard", bound), ("fast", bound)] {
+            let got = colours(air, &name.parse::<WavelengthGrid>().unwrap(), elevation);
             let differences: Vec<f64> = exact
                 .iter()
                 .zip(&got)
@@ -81,7 +91,7 @@ fn compare_colours(dense: &WavelengthGrid, sun_elevations_deg: &[f64], bounds: [
                 .zip(&got)
                 .map(|(a, b)| (b[1] / a[1] - 1.0).abs());
             println!(
-                "{name}, sun at {elevation} degrees: CIEDE2000 at most {worst:.3}, luminance within {:.2} %",
+                "{air:?}, {name}, sun at {elevation} degrees: CIEDE2000 at most {worst:.3}, luminance within {:.2} %",
                 100.0 * luminance.fold(0.0, f64::max)
             );
             assert!(

@@ -15,8 +15,8 @@ use crate::optics::{MatrixRatios, TabulatedPhase};
 /// Wavelengths of the embedded tables, nm: those of the grids `rgb`, `fast` and `standard`, those that stand for red, green and
 /// blue, and the one for which visibility is defined.
 const STORED_NM: [f64; 29] = [
-    360.0, 398.0, 413.0, 424.0, 440.0, 446.0, 448.0, 465.0, 466.0, 483.0, 485.0, 510.0, 523.0,
-    539.0, 549.0, 550.0, 562.0, 563.0, 595.0, 596.0, 612.0, 632.0, 637.0, 671.0, 680.0, 682.0,
+    360.0, 398.0, 423.0, 424.0, 440.0, 446.0, 457.0, 465.0, 466.0, 485.0, 499.0, 510.0, 526.0,
+    539.0, 549.0, 550.0, 559.0, 562.0, 595.0, 596.0, 612.0, 635.0, 637.0, 671.0, 680.0, 683.0,
     716.0, 765.0, 830.0,
 ];
 /// Largest code of `ln p`.
