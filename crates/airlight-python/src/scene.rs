@@ -142,7 +142,7 @@ impl Scene {
     /// Parameters
     /// ----------
     /// channels : str
-    ///     ``spectral``, or an RGB space: ``srgb``, ``rec2020``, ``acescg``.
+    ///     ``spectral``, or an RGB space: ``srgb``, ``rec2020``, ``acescg``, with the values of pictures.
     /// threads : int or None
     ///     Number of threads.
     ///
@@ -161,7 +161,10 @@ impl Scene {
             space => Channels::Rgb(space.parse().map_err(Failure::from)?),
         };
         let view = compute(py, threads, |control| {
-            let scene = self.0.resolve()?;
+            let mut scene = self.0.resolve()?;
+            if channels != Channels::Spectral {
+                scene = scene.for_colors();
+            }
             let sun = scene.sun.at_start()?;
             let suns = SunCoverage::near(sun.elevation_deg, scene.observer_altitude_m);
             let prepared = registry::prepare(&scene, suns, control)?;

@@ -73,7 +73,10 @@ impl Renderer {
         if is_spectral(&scene.output) {
             scene.output.spectral = Some(true);
         }
-        let resolved = scene.resolve()?;
+        let mut resolved = scene.resolve()?;
+        if scene.output.spectral != Some(true) {
+            resolved = resolved.for_colors();
+        }
         let model = registry::of_scene(&resolved)?;
         let variant = scene.solver.variant.as_deref();
         check_inputs(model, &resolved.set_inputs, variant, registry::ALL)?;

@@ -15,7 +15,7 @@ pub struct SolverArgs {
     #[arg(long, value_name = "NAME", value_parser = solvers())]
     pub solver: Option<String>,
     /// Wavelengths to compute: rgb (3), fast (8), standard (16), fine (95), 1nm (471), or a list in nm: 440,550,680 [default:
-    /// standard]
+    /// fast for pictures in colour, standard for spectra]
     #[arg(long, value_name = "GRID|LIST")]
     pub wavelengths: Option<String>,
     /// Orders of scattering: all, or single scattering with the ground lit by direct sunlight [default: all]

@@ -295,7 +295,7 @@ impl OverlayScene {
         if !self.overlay.sky_light {
             return Ok(None);
         }
-        SkyLight::solve_with(&self.sky_scene().resolve()?, control).map(Some)
+        SkyLight::solve_with(&self.sky_scene().resolve()?.for_colors(), control).map(Some)
     }
 
     /// The scene whose sky lights the fog: without the fog, and with the eye at its height above the ground.

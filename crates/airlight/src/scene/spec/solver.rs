@@ -19,7 +19,7 @@ pub struct SolverSpec {
     /// violet. Default: true.
     pub polarisation_correction: Option<bool>,
     /// Wavelengths to compute: rgb (3), fast (8), standard (16), fine (95), 1nm (471), or a list in nm: "440,550,680".
-    /// Default: standard.
+    /// Default: fast for pictures in colour, standard for spectra.
     pub wavelengths: Option<String>,
     /// Monte Carlo paths for each pixel or direction, 128 or above. Default: 256 for pixels, 65536 for a probe.
     pub paths: Option<u64>,
