@@ -14,7 +14,7 @@ use super::polarised::{POLARISED, TensorHarmonics};
 use crate::math::interpolation::lerp;
 use crate::spectrum::Spectrum;
 use crate::transfer::columns::ColumnRow;
-use crate::transfer::march::{MAX_NODES, Marcher, Node};
+use crate::transfer::march::{MAX_NODES, Marcher, Node, StepDensities};
 use crate::transfer::ray::{Ray, in_shadow};
 use crate::transfer::residual::{STREAMS, stream_transmittances};
 use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent, Shell};
@@ -532,19 +532,23 @@ impl<const N: usize> Path<N> {
         let columns: Vec<ColumnRow<'_>> = self.nodes.iter().map(columns).collect();
         let count = K + usize::from(LINEAR);
         let mut ends_m = Vec::new();
+        // By step, once they are needed.
+        let mut densities: Vec<Option<Option<StepDensities>>> = vec![None; self.steps.len()];
         for slot in 0..rays {
             let mut sums = [[Spectrum::ZERO; STREAMS + 1]; MAX_CONSTITUENTS];
             let (mu_sun, nu) = (bundle.mu_sun[slot], bundle.nu[slot]);
-            for step in &self.steps {
+            for (step, densities) in self.steps.iter().zip(&mut densities) {
                 ends_m.clear();
                 ends_m.extend(edges.inside(step, slot));
                 if !ends_m.is_empty() {
                     ends_m.push(step.to_m);
                     ends_m.sort_unstable_by(f64::total_cmp);
+                    let densities =
+                        densities.get_or_insert_with(|| self.densities(air, marcher, step));
                     self.accumulate_partly_lit::<K, LINEAR>(
                         air,
                         marcher,
-                        step,
+                        (step, densities.as_ref()),
                         (bundle, slot),
                         &ends_m,
                         &mut sums,
@@ -571,13 +575,25 @@ impl<const N: usize> Path<N> {
         }
     }
 
+    /// Densities between the nodes of a step, if it resolves the air.
+    fn densities(
+        &self,
+        air: &Air<N>,
+        marcher: &Marcher<'_>,
+        step: &PathStep,
+    ) -> Option<StepDensities> {
+        let nodes = self.nodes[step.nodes.clone()].iter();
+        let nodes = nodes.map(|node| (node.t, node.densities));
+        marcher.densities_between(air.shell(), (step.from_m, step.to_m), nodes)
+    }
+
     /// The same of a step in which a ray crosses edges of shadows, which divide it into parts with these ends.
     #[inline(always)]
     fn accumulate_partly_lit<const K: usize, const LINEAR: bool>(
         &self,
         air: &Air<N>,
         marcher: &Marcher<'_>,
-        step: &PathStep,
+        (step, densities): (&PathStep, Option<&StepDensities>),
         (bundle, slot): (&RayBundle, usize),
         ends_m: &[f64],
         out: &mut Streams<N>,
@@ -588,7 +604,12 @@ impl<const N: usize> Path<N> {
         let mut from_m = step.from_m;
         for &to_m in ends_m {
             let mut nodes = [Node::default(); MAX_NODES];
-            let part = marcher.step(shell, &ray, (from_m, to_m), &columns_m, &mut nodes);
+            let span_m = (from_m, to_m);
+            let at = |t, radius_m| match densities {
+                Some(densities) => densities.at(t),
+                None => shell.densities_at(radius_m),
+            };
+            let part = marcher.step_through(shell, &ray, span_m, &columns_m, at, &mut nodes);
             columns_m = part.columns_behind_m();
             from_m = to_m;
             for node in part.nodes {
