@@ -1,6 +1,7 @@
 //! Time to prepare and draw a sky: `cargo bench -p airlight --bench sky`.
 //!
-//! The picture is the one of the README: 2048 x 1024 directions of the whole sphere, default wavelengths, linear sRGB.
+//! The picture is the one of the README: 2048 x 1024 directions of the whole sphere, linear sRGB, at the wavelengths of pictures (the grid
+//! `fast`) but where another grid is named.
 
 use airlight::atmosphere::{Atmosphere, presets};
 use airlight::axes::direction;
@@ -30,12 +31,16 @@ fn prepare(grid: &WavelengthGrid, suns: SunCoverage, scattering: Scattering) -> 
     Sky::prepare(&air(), grid, &settings).expect("a sky")
 }
 
+/// The sky of a picture.
+fn solved(elevation_deg: f64) -> Sky {
+    let suns = SunCoverage::near(elevation_deg, 0.0);
+    prepare(&WavelengthGrid::fast(), suns, Scattering::All)
+}
+
+/// The sky at 16 wavelengths.
 fn standard(elevation_deg: f64) -> Sky {
-    prepare(
-        &WavelengthGrid::standard(),
-        SunCoverage::near(elevation_deg, 0.0),
-        Scattering::All,
-    )
+    let suns = SunCoverage::near(elevation_deg, 0.0);
+    prepare(&WavelengthGrid::standard(), suns, Scattering::All)
 }
 
 fn view(sky: &Sky, elevation_deg: f64) -> View {
@@ -59,12 +64,19 @@ fn draw(table: &SkyTable, picture: &mut [f32]) {
 /// From scratch to the whole picture in memory, at an elevation of the sun (degrees).
 #[divan::bench(args = [60.0, 10.0, 2.0, -4.0, -10.0], sample_count = 10)]
 fn panorama_from_scratch(bencher: Bencher, elevation_deg: f64) {
-    bencher.bench(|| {
-        let mut picture = vec![0.0f32; 3 * WIDTH * HEIGHT];
-        let sky = standard(elevation_deg);
-        draw(&view(&sky, elevation_deg).table(RGB), &mut picture);
-        picture
-    });
+    bencher.bench(|| panorama(&solved(elevation_deg), elevation_deg));
+}
+
+/// The same at 16 wavelengths.
+#[divan::bench(args = [60.0, 10.0, 2.0, -4.0, -10.0], sample_count = 10)]
+fn panorama_of_16_wavelengths(bencher: Bencher, elevation_deg: f64) {
+    bencher.bench(|| panorama(&standard(elevation_deg), elevation_deg));
+}
+
+fn panorama(sky: &Sky, elevation_deg: f64) -> Vec<f32> {
+    let mut picture = vec![0.0f32; 3 * WIDTH * HEIGHT];
+    draw(&view(sky, elevation_deg).table(RGB), &mut picture);
+    picture
 }
 
 #[divan::bench(args = ["rgb", "fast", "standard", "fine"], sample_count = 5)]
@@ -73,15 +85,10 @@ fn solve_one_sun(bencher: Bencher, grid: &str) {
     bencher.bench(|| prepare(&grid, SunCoverage::near(30.0, 0.0), Scattering::All));
 }
 
-#[divan::bench(sample_count = 3)]
-fn solve_all_suns(bencher: Bencher) {
-    bencher.bench(|| {
-        prepare(
-            &WavelengthGrid::standard(),
-            SunCoverage::All,
-            Scattering::All,
-        )
-    });
+#[divan::bench(args = ["fast", "standard"], sample_count = 3)]
+fn solve_all_suns(bencher: Bencher, grid: &str) {
+    let grid = grid.parse::<WavelengthGrid>().expect("a grid");
+    bencher.bench(|| prepare(&grid, SunCoverage::All, Scattering::All));
 }
 
 #[divan::bench(sample_count = 5)]
@@ -97,14 +104,14 @@ fn solve_single_scattering(bencher: Bencher) {
 
 #[divan::bench(args = [30.0, -6.0], sample_count = 10)]
 fn tabulate(bencher: Bencher, elevation_deg: f64) {
-    let sky = standard(elevation_deg);
+    let sky = solved(elevation_deg);
     bencher.bench(|| view(&sky, elevation_deg).table(RGB));
 }
 
 /// Two megapixels along rows of equal elevation.
 #[divan::bench(sample_count = 10)]
 fn draw_by_rows(bencher: Bencher) {
-    let sky = standard(30.0);
+    let sky = solved(30.0);
     let table = view(&sky, 30.0).table(RGB);
     let mut picture = vec![0.0f32; 3 * WIDTH * HEIGHT];
     bencher.bench_local(|| draw(&table, black_box(&mut picture)));
@@ -113,7 +120,7 @@ fn draw_by_rows(bencher: Bencher) {
 /// Two megapixels in arbitrary directions.
 #[divan::bench(sample_count = 10)]
 fn draw_by_directions(bencher: Bencher) {
-    let sky = standard(30.0);
+    let sky = solved(30.0);
     let table = view(&sky, 30.0).table(RGB);
     let directions: Vec<_> = (0..WIDTH * HEIGHT)
         .map(|i| {
