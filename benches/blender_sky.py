@@ -6,7 +6,7 @@
 
 Blender (Cycles, one sample a pixel) computes its sky at four wavelengths with fitted multiple scattering whenever the sun has
 moved, and renders it; Airlight solves for all orders of scattering, tabulates the view and draws it, at sixteen wavelengths
-(the grid "standard") and at eight ("fast"). All hold 2048 x 1024 pixels without the sun's disc in the end, without a file. Prints
+(the grid "standard") and at the eight of pictures ("fast"). All hold 2048 x 1024 pixels without the sun's disc in the end, without a file. Prints
 medians in seconds, and the ratios of those of Airlight to that of Blender.
 """
 
