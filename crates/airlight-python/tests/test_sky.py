@@ -31,7 +31,8 @@ def test_results_have_the_same_bits_for_any_number_of_threads():
         np.testing.assert_array_equal(panorama, results[0][1])
 
 
-def test_panorama_is_the_picture_of_the_program(program, tmp_path, view):
+def test_panorama_is_the_picture_of_the_program(program, tmp_path):
+    view = airlight.Sky("clear", wavelengths="fast", sun_elevation_deg=30).view(sun_elevation_deg=30)
     file = tmp_path / "sky.exr"
     program("sky", "--atmosphere", "clear", "--sun-elevation", 30, "--size", "128x64", "--precision", "float", "-o", file)
     np.testing.assert_array_equal(view.panorama(64), airlight.read_picture(file))

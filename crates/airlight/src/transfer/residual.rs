@@ -143,7 +143,7 @@ impl HalfAngle<f32> {
     /// branches: loops over many angles run in vector registers.
     #[inline(always)]
     pub fn among(self, intervals: usize) -> (i32, f32) {
-        let position = self.coordinate().max(0.0).min(1.0) * intervals as f32;
+        let position = self.coordinate().clamp(0.0, 1.0) * intervals as f32;
         let below = position.floor().min(intervals as f32 - 1.0);
         (whole(below), position - below)
     }
