@@ -10,7 +10,8 @@
 //! ```
 //!
 //! `phi_k` are the cardinal functions of the natural cubic spline (linear interpolation with fewer than 5 nodes), constant
-//! beyond the end nodes; those of `fast` follow the [bands of ozone](super::interpolant). A response that does not depend on wavelength therefore gives the sun's own XYZ on any grid.
+//! beyond the end nodes; those of `fast` follow the [bands of ozone](super::interpolant). A response that does not depend on
+//! wavelength therefore gives the sun's own XYZ on any grid.
 //! The radiance at a node is `L_k = r_k E_k`, with `E_k` the mean solar irradiance about the node
 //! ([`WavelengthGrid::solar_irradiance`]), so its weight is `W_k / E_k`.
 //!
