@@ -36,18 +36,18 @@ pub const FOLDS: [Fold; 2] = [
         fitted: ONE,
         scored: OTHER,
         aerosol: Aerosol {
-            optical_depth_550: 0.1195,
-            angstrom_exponent: 1.539,
-            single_scattering_albedo: 0.738,
+            optical_depth_550: 0.1168,
+            angstrom_exponent: 1.463,
+            single_scattering_albedo: 0.745,
         },
     },
     Fold {
         fitted: OTHER,
         scored: ONE,
         aerosol: Aerosol {
-            optical_depth_550: 0.1010,
-            angstrom_exponent: 1.435,
-            single_scattering_albedo: 0.769,
+            optical_depth_550: 0.0972,
+            angstrom_exponent: 1.342,
+            single_scattering_albedo: 0.786,
         },
     },
 ];
