@@ -93,7 +93,7 @@ pub struct SourceTables {
 
 impl SkySolver {
     /// Settings of the solver for all suns, with more moments and directions than its own: in dust under a low sun, where light is up to
-    /// 2.7 % off that of [`SkySettings::fine`] without them, it is within 0.5 %, for half as much time again. Of the first order, the eleventh
+    /// 2.7 % off that of denser settings without them, it is within 0.5 %, for half as much time again. Of the first order, the eleventh
     /// direction above the horizon is for the air just above it in dust under a sun at -6 degrees, 2 % off with ten.
     pub fn default_settings() -> SkySettings {
         let mut settings = SkySettings::default();

@@ -12,7 +12,8 @@ use pyo3::prelude::*;
 /// ----------
 /// suites : list of str or None
 ///     ``tables``, ``monte-carlo``, ``limits``, ``random-airs``, ``peers``, ``measured``; None: all of these, which takes minutes.
-///     The suites of frames of a graphics device are those of the program alone.
+///     ``fine`` repeats them with the fine settings, which takes longer. The suites of frames of a graphics device are those of the
+///     program alone.
 /// threads : int or None
 ///     Number of threads.
 ///

@@ -59,7 +59,7 @@ impl GridArgument {
 /// scattering : {'all', 'single'}
 ///     Orders of scattering.
 /// effort : {'standard', 'fine'}
-///     Resolution.
+///     Resolution; the error of ``fine`` is below 0.5 %, and it is twenty times slower.
 /// polarisation_correction : bool
 ///     Whether light is polarised by scattering, which changes its radiance by 1 to 3 %.
 /// threads : int or None

@@ -184,8 +184,9 @@ fn fit() {
 fn settings() {
     println!("| setting | sun zenith 80° or less | above 80° |\n|---|---|---|");
     type Change = fn(&mut SkySettings);
-    let changes: [(&str, Change); 10] = [
+    let changes: [(&str, Change); 11] = [
         ("default", |_| ()),
+        ("suns half as far apart", |s| s.sun_spacing = 0.5),
         ("altitudes 8", |s| s.altitudes = 8),
         ("altitudes 40", |s| s.altitudes = 40),
         ("degree 5, peak degree 6, all of it rescattered", |s| {

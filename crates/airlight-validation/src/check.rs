@@ -15,6 +15,8 @@ pub enum Suite {
     Limits,
     /// Skies of random airs, suns, eyes and views compared with Airlight's Monte Carlo.
     RandomAirs,
+    /// The skies of the suites above with the fine settings.
+    Fine,
     /// Other sky models compared with Airlight: differences, without a reference.
     Peers,
     /// The sky measured on 27 May 2013.
@@ -32,6 +34,7 @@ airlight::named! { Suite, "a set of comparisons", [
     ("monte-carlo", (MonteCarlo), "skies in daylight and twilight against Airlight's Monte Carlo solver"),
     ("limits", (Limits), "the sky around the sun, polarised light and optically thick air against Monte Carlo and discrete ordinates; energy and reciprocity"),
     ("random-airs", (RandomAirs), "skies of random airs, suns, eyes and views against Airlight's Monte Carlo"),
+    ("fine", (Fine), "the radiances of these with the fine settings: within 0.5 % (minutes)"),
     ("peers", (Peers), "published sky models against the default solver"),
     ("measured", (Measured), "the sky measured on 27 May 2013 against the solver and published models"),
     ("gpu", (Gpu), "frames of airlight-gpu and of published real-time models in hazy air against the fine solver (a minute; needs a graphics device)"),
@@ -40,7 +43,7 @@ airlight::named! { Suite, "a set of comparisons", [
 ] }
 
 impl Suite {
-    /// The suites that need no graphics device.
+    /// The suites that need neither a graphics device nor minutes.
     pub const USUAL: [Self; 6] = [
         Self::Tables,
         Self::MonteCarlo,
@@ -57,6 +60,7 @@ impl Suite {
             Self::MonteCarlo => "Skies by day and in twilight against Airlight's Monte Carlo",
             Self::Limits => "Skies around the sun, polarised, and of optically thick air",
             Self::RandomAirs => "Skies of random airs against Airlight's Monte Carlo",
+            Self::Fine => "Skies solved with the fine settings",
             Self::Peers => "Differences to other models of the sky (without a reference)",
             Self::Measured => "The sky measured at Ithaca on 27 May 2013",
             Self::Gpu => {

@@ -4,11 +4,12 @@
 //! checks of some [`Suite`]s; [`report`] writes them.
 //!
 //! Modules, each importing only from those above it: [`check`] (rows and their statistics), [`table`] (the embedded tables),
-//! [`solved`] (a sky solved at a table's wavelengths), [`skies`] (tables of skies), [`limits`] (skies where solvers fail), [`random_airs`] (random skies),
+//! [`solved`] (a sky solved at a table's wavelengths), [`skies`] (tables of skies), [`limits`] (skies where solvers fail), [`random_airs`] (random skies), [`fine`] (the same skies with the fine settings),
 //! [`measured`] (the measured sky),
 //! `frames` (frames of a graphics device, with the feature `gpu`), [`report`].
 
 pub mod check;
+pub mod fine;
 #[cfg(feature = "gpu")]
 pub mod frames;
 pub mod limits;
@@ -59,8 +60,9 @@ pub fn run_with(suites: &[Suite], control: Control<'_>) -> Result<Vec<Check>, Ru
         checks.extend(match suite {
             Suite::Tables => skies::checks(control)?,
             Suite::MonteCarlo => skies::against_truth(&SkySettings::default(), control)?,
-            Suite::Limits => limits::checks(control)?,
+            Suite::Limits => limits::checks(&SkySettings::default(), control)?,
             Suite::RandomAirs => random_airs::checks(&SkySettings::default(), control)?,
+            Suite::Fine => fine::checks(control)?,
             Suite::Peers => skies::peers(control)?,
             Suite::Measured => measured::checks(control)?,
             #[cfg(feature = "gpu")]

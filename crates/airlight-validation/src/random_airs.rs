@@ -3,6 +3,7 @@
 //! Every case follows from its number: an atmosphere in the format of atmosphere files, a sun, an eye and directions.
 
 use crate::check::{At, Check, Row, Suite, Unit};
+use crate::skies::scalar;
 use crate::table::Table;
 use airlight::atmosphere::{AerosolType, Atmosphere, ConstituentKind};
 use airlight::axes::direction;
@@ -138,10 +139,7 @@ impl RandomSky {
 /// # Panics
 /// Where the solver refuses the air or the settings.
 pub fn checks(settings: &SkySettings, control: Control<'_>) -> Result<Vec<Check>, Cancelled> {
-    let settings = SkySettings {
-        polarisation_correction: false,
-        ..settings.clone()
-    };
+    let settings = scalar(settings);
     let check = |what: &str| Check {
         suite: Suite::RandomAirs,
         what: what.into(),

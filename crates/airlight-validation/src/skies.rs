@@ -224,7 +224,7 @@ fn against_all(
 }
 
 /// These settings without polarisation, which the tables do without.
-fn scalar(settings: &SkySettings) -> SkySettings {
+pub(crate) fn scalar(settings: &SkySettings) -> SkySettings {
     SkySettings {
         polarisation_correction: false,
         ..settings.clone()

@@ -182,7 +182,9 @@ impl<const N: usize> Solved<N> {
         let mut diffuse = None;
         if settings.scattering == Scattering::All && !air.scatterers.is_empty() {
             let bounds = (air.shell().ground_radius_m, air.shell().top_radius_m);
-            let zeniths = settings.suns.sun_zeniths_deg(bounds.0, bounds.1);
+            let zeniths = settings
+                .suns
+                .sun_zeniths_deg(settings.sun_spacing, bounds.0, bounds.1);
             let grid = FieldGrid::new(&air, settings.altitudes, &zeniths);
             let eye_zenith = settings.suns.eye_zenith_deg(bounds.0, bounds.1);
             let eye_sun = eye_zenith.map(|zenith| grid.nearest_sun(zenith.to_radians().cos()));

@@ -34,6 +34,7 @@ impl SunCoverage {
     pub(super) fn covers(
         self,
         (altitude_m, sun_elevation_deg): (f64, f64),
+        spacing: f64,
         ground_radius_m: f64,
         top_radius_m: f64,
     ) -> bool {
@@ -52,7 +53,7 @@ impl SunCoverage {
         if (zenith - centre).abs() > same_sun_deg(centre) {
             return false;
         }
-        let zeniths = self.sun_zeniths_deg(ground_radius_m, top_radius_m);
+        let zeniths = self.sun_zeniths_deg(spacing, ground_radius_m, top_radius_m);
         let (first, last) = (zeniths[0] - 1e-6, zeniths[zeniths.len() - 1] + 1e-6);
         let range = range_deg(altitude_m, ground_radius_m, top_radius_m);
         (zenith - range).max(0.0) >= first && (zenith + range).min(NIGHT_DEG) <= last
@@ -96,8 +97,14 @@ impl SunCoverage {
         (range <= WIDE_DEG).then(|| (90.0 - sun_elevation_deg).clamp(0.0, NIGHT_DEG))
     }
 
-    /// Zenith angles of the sun at which the light inside the atmosphere is solved for, degrees, increasing.
-    pub(super) fn sun_zeniths_deg(self, ground_radius_m: f64, top_radius_m: f64) -> Vec<f64> {
+    /// Zenith angles of the sun at which the light inside the atmosphere is solved for, degrees, increasing: `spacing` times as far
+    /// apart as by default.
+    pub(super) fn sun_zeniths_deg(
+        self,
+        spacing: f64,
+        ground_radius_m: f64,
+        top_radius_m: f64,
+    ) -> Vec<f64> {
         let (
             Self::Near {
                 observer_altitude_m,
@@ -107,8 +114,8 @@ impl SunCoverage {
         ) = (self, self.eye_zenith_deg(ground_radius_m, top_radius_m))
         else {
             return match self {
-                Self::AboveHorizon => zeniths_above_horizon_deg(),
-                _ => all_zeniths_deg(),
+                Self::AboveHorizon => zeniths_above_horizon_deg(spacing),
+                _ => all_zeniths_deg(spacing),
             };
         };
         let range = range_deg(observer_altitude_m, ground_radius_m, top_radius_m);
@@ -116,7 +123,8 @@ impl SunCoverage {
         let highest = (centre + range + MARGIN_DEG).min(NIGHT_DEG);
         let mut zeniths = vec![centre];
         for (side, end) in [(-1.0, lowest), (1.0, highest)] {
-            let (mut step, growth) = steps_deg(centre);
+            let (step, growth) = steps_deg(centre);
+            let (mut step, growth) = (step * spacing, growth.powf(spacing));
             let mut zenith = centre;
             while (zenith - end) * side < 0.0 {
                 zenith += side * step;
@@ -172,8 +180,8 @@ fn range_deg(altitude_m: f64, ground_radius_m: f64, top_radius_m: f64) -> f64 {
 }
 
 /// Zenith angles over the whole range: coarse for high suns, every degree through twilight.
-fn all_zeniths_deg() -> Vec<f64> {
-    zeniths_deg(NIGHT_DEG, |zenith| match zenith {
+fn all_zeniths_deg(spacing: f64) -> Vec<f64> {
+    zeniths_deg(NIGHT_DEG, spacing, |zenith| match zenith {
         z if z < 60.0 => 15.0,
         z if z < 72.0 => 6.0,
         z if z < 84.0 => 3.0,
@@ -184,8 +192,8 @@ fn all_zeniths_deg() -> Vec<f64> {
 }
 
 /// Zenith angles down to 10 degrees below the horizon.
-fn zeniths_above_horizon_deg() -> Vec<f64> {
-    zeniths_deg(100.0, |zenith| match zenith {
+fn zeniths_above_horizon_deg(spacing: f64) -> Vec<f64> {
+    zeniths_deg(100.0, spacing, |zenith| match zenith {
         z if z < 60.0 => 6.0,
         z if z < 75.0 => 5.0,
         z if z < 85.0 => 3.0,
@@ -193,12 +201,12 @@ fn zeniths_above_horizon_deg() -> Vec<f64> {
     })
 }
 
-/// Zenith angles from 0 to `lowest`, with a step that depends on the angle.
-fn zeniths_deg(lowest: f64, step: impl Fn(f64) -> f64) -> Vec<f64> {
+/// Zenith angles from 0 to `lowest`, with `spacing` times a step that depends on the angle.
+fn zeniths_deg(lowest: f64, spacing: f64, step: impl Fn(f64) -> f64) -> Vec<f64> {
     let mut zeniths = vec![0.0];
     let mut zenith = 0.0;
     while zenith < lowest {
-        zenith = f64::min(zenith + step(zenith), lowest);
+        zenith = f64::min(zenith + spacing * step(zenith), lowest);
         zeniths.push(zenith);
     }
     zeniths
@@ -211,11 +219,17 @@ mod tests {
     #[test]
     fn requested_elevation_is_a_node_and_nodes_cover_the_visible_range() {
         for elevation in [90.0, 60.0, 10.0, 2.0, -4.0, -18.0] {
-            let zeniths = SunCoverage::near(elevation, 0.0).sun_zeniths_deg(6.36e6, 6.46e6);
-            assert!(zeniths.contains(&(90.0 - elevation)));
-            assert!(zeniths.windows(2).all(|w| w[1] > w[0]), "{zeniths:?}");
-            assert!(zeniths[0] <= (90.0 - elevation - 10.0).max(0.0));
-            assert!(zeniths.len() < 32, "{zeniths:?}");
+            for spacing in [1.0, 0.5] {
+                let near = SunCoverage::near(elevation, 0.0);
+                let zeniths = near.sun_zeniths_deg(spacing, 6.36e6, 6.46e6);
+                assert!(zeniths.contains(&(90.0 - elevation)));
+                assert!(zeniths.windows(2).all(|w| w[1] > w[0]), "{zeniths:?}");
+                assert!(zeniths[0] <= (90.0 - elevation - 10.0).max(0.0));
+                assert!(
+                    zeniths.len() < (32.0 / spacing) as usize,
+                    "{spacing}: {zeniths:?}"
+                );
+            }
         }
     }
 
@@ -223,7 +237,7 @@ mod tests {
     fn views_are_covered_by_what_was_prepared_for_them() {
         let earth = (6.36e6, 6.46e6);
         let covers = |coverage: SunCoverage, altitude_m: f64, elevation: f64| {
-            coverage.covers((altitude_m, elevation), earth.0, earth.1)
+            coverage.covers((altitude_m, elevation), 1.0, earth.0, earth.1)
         };
         for elevation in [90.0, 60.0, 10.0, 2.0, -4.0, -18.0, -40.0, -90.0] {
             for altitude_m in [0.0, 3e3, 12e3, 60e3, 400e3] {
@@ -247,8 +261,8 @@ mod tests {
     #[test]
     fn views_from_space_cover_all_sun_elevations() {
         assert_eq!(
-            SunCoverage::near(30.0, 400e3).sun_zeniths_deg(6.36e6, 6.46e6),
-            SunCoverage::All.sun_zeniths_deg(6.36e6, 6.46e6)
+            SunCoverage::near(30.0, 400e3).sun_zeniths_deg(1.0, 6.36e6, 6.46e6),
+            SunCoverage::All.sun_zeniths_deg(1.0, 6.36e6, 6.46e6)
         );
     }
 }

@@ -54,7 +54,7 @@ impl Harmonics {
     }
 
     /// Largest supported degree.
-    pub const MAX_DEGREE: usize = 16;
+    pub const MAX_DEGREE: usize = 20;
     /// Largest number of harmonics, the size of arrays for [`Harmonics::evaluate`].
     pub const MAX_COUNT: usize = count(Self::MAX_DEGREE);
 

@@ -27,6 +27,8 @@ named! { Scattering, "a scattering", [
 pub struct SkySettings {
     /// Sun elevations and observer altitudes to prepare for.
     pub suns: SunCoverage,
+    /// Distances between these elevations, relative to those of the default settings: 0.1 to 2.
+    pub sun_spacing: f64,
     /// Orders of scattering that are computed.
     pub scattering: Scattering,
     /// Number of altitudes at which the light inside the atmosphere is solved for, 2 to 200.
@@ -81,6 +83,7 @@ impl Default for SkySettings {
     fn default() -> Self {
         Self {
             suns: SunCoverage::All,
+            sun_spacing: 1.0,
             scattering: Scattering::All,
             altitudes: 17,
             polarisation_correction: true,
@@ -107,22 +110,24 @@ impl Default for SkySettings {
 }
 
 impl SkySettings {
-    /// Settings for hazy air and low suns: more altitudes, directions and moments; about five times slower.
+    /// Settings for reference values, dust and low suns: denser suns, altitudes and directions and more moments; about twenty
+    /// times slower.
     pub fn fine() -> Self {
         Self {
+            sun_spacing: 0.5,
             altitudes: 28,
             orders: OrderSettings {
-                degree: 12,
-                peak_degree: 12,
-                rescattered_degree: 8,
+                degree: 20,
+                peak_degree: 20,
+                rescattered_degree: 16,
                 first: Directions {
-                    zenith_nodes: [9, 12, 8],
-                    azimuths: 12,
+                    zenith_nodes: [12, 16, 12],
+                    azimuths: 18,
                     panel_nodes: 4,
                 },
                 later: Directions {
-                    zenith_nodes: [8, 9, 8],
-                    azimuths: 9,
+                    zenith_nodes: [10, 12, 10],
+                    azimuths: 14,
                     panel_nodes: 3,
                 },
                 tolerance: 5e-4,
@@ -153,12 +158,16 @@ impl SkySettings {
         let checks = [
             (finite, "a finite elevation and altitude in suns"),
             (
+                (0.1..=2.0).contains(&self.sun_spacing),
+                "a sun_spacing from 0.1 to 2",
+            ),
+            (
                 (2..=200).contains(&self.altitudes),
                 "altitudes from 2 to 200",
             ),
             (
                 orders.degree <= Harmonics::MAX_DEGREE,
-                "orders.degree of at most 16",
+                "orders.degree of at most 20",
             ),
             (
                 orders.peak_degree >= orders.degree && orders.peak_degree <= 64,
@@ -234,10 +243,11 @@ mod tests {
     #[test]
     fn settings_out_of_range_are_refused() {
         type Change = fn(&mut SkySettings);
-        let changes: [Change; 8] = [
+        let changes: [Change; 9] = [
             |s| s.suns = SunCoverage::near(f64::NAN, 0.0),
             |s| s.altitudes = 1,
-            |s| s.orders.degree = 17,
+            |s| s.sun_spacing = 0.0,
+            |s| s.orders.degree = 21,
             |s| s.orders.peak_degree = 7,
             |s| s.orders.rescattered_degree = 11,
             |s| s.orders.later.panel_nodes = 5,

@@ -114,8 +114,15 @@ impl Sky {
         let shell = self.shell();
         let height_m = shell.planet_radius_m + altitude_m - shell.ground_radius_m;
         let bounds = (shell.ground_radius_m, shell.top_radius_m);
-        let suns = self.0.settings.suns;
-        suns.covers((height_m, sun_elevation_deg), bounds.0, bounds.1)
+        let SkySettings {
+            suns, sun_spacing, ..
+        } = self.0.settings;
+        suns.covers(
+            (height_m, sun_elevation_deg),
+            sun_spacing,
+            bounds.0,
+            bounds.1,
+        )
     }
 
     /// This sky if it covers a view, otherwise that for all suns and altitudes.

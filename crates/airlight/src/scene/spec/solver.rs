@@ -58,13 +58,13 @@ pub enum Effort {
     /// Error in daylight below 1 % in clear air (1.4 % with the sun at the horizon) and 3 % in haze.
     #[default]
     Standard,
-    /// Twice as many heights, more directions and moments: error in daylight below 1 % in haze too, five times slower.
+    /// Denser suns, heights and directions, and twice as many moments: error below 0.5 %, in dust and twilight too, twenty times slower.
     Fine,
 }
 
 named! { Effort, "an effort", [
     ("standard", (Standard), "error in daylight below 1 % in clear air (1.4 % with the sun at the horizon), 3 % in haze"),
-    ("fine", (Fine), "error in daylight below 1 % in haze too, five times slower"),
+    ("fine", (Fine), "error below 0.5 %, in dust and twilight too, twenty times slower"),
 ] }
 
 /// Colour of the sun of single-scattering.
